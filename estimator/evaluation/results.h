@@ -1,0 +1,76 @@
+// Results of a campaign: the one structure behind results.csv, results.json, the figures and the report.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "estimator/types.h"
+
+namespace waverig::evaluation {
+
+// One single wave held against the truth.
+struct JudgedWave {
+  estimator::Wave wave;
+  double true_height_m = estimator::kUnknown;   // crest to trough of the true heave over the same span
+};
+
+// One contribution to the standard uncertainty of a mean height (GUM): name, value in metres, type A or B.
+struct Contribution {
+  std::string name;
+  double sigma_m = 0;
+  char type = 'B';
+};
+
+// Statistics of a set of waves; REFERENCE section 2. Lengths in metres; *_percent in percent.
+struct HeightStatistics {
+  std::int64_t waves = 0;
+  double mean_height_m = estimator::kUnknown;
+  double error_rate_percent = estimator::kUnknown;   // 100 |mean - set| / set
+  double std_m = estimator::kUnknown;                // over single waves
+  double rmse_m = estimator::kUnknown;               // single waves against their true heights
+  double mean_error_percent = estimator::kUnknown;   // signed, mean against true mean
+  double mean_true_height_m = estimator::kUnknown;
+  double expanded_uncertainty_m = estimator::kUnknown;  // k = 2, of the mean height
+  double bound_std_m = estimator::kUnknown;          // Cramer-Rao, REFERENCE section 3; unknown where noise is unknown
+  double mean_period_s = estimator::kUnknown;
+  std::vector<Contribution> budget;
+  std::int32_t flags = 0;
+};
+
+// One run, one method.
+struct RunResult {
+  std::string run;            // stem of runs/<run>.lcm
+  std::string method;
+  int repeat = 0;
+  double period_s = 0;        // as set
+  double height_m = 0;        // as set
+  HeightStatistics statistics;
+  std::vector<JudgedWave> waves;      // the steady ones
+  std::vector<estimator::SeaState> seas;
+  double heave_rmse_m = estimator::kUnknown;   // against the true heave over the steady part, mean removed
+  std::int64_t excluded_waves = 0;    // in ramps or cut by the record's edge
+};
+
+// One setting and method, over its repeats: a row of results.csv.
+struct CellResult {
+  double period_s = 0;
+  double height_m = 0;
+  std::string method;
+  HeightStatistics statistics;
+  double heave_rmse_m = estimator::kUnknown;
+};
+
+struct CampaignResults {
+  std::string name;
+  std::string version;        // of waverig
+  std::string command;        // as given
+  std::uint64_t seed = 0;
+  bool complete = false;
+  std::vector<CellResult> cells;   // by period, height, method
+  std::vector<RunResult> runs;
+  std::string calibration_json;    // report of the campaign's own calibration, verbatim
+};
+
+}  // namespace waverig::evaluation

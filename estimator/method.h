@@ -1,0 +1,49 @@
+// Method: one way from samples to heave and waves, chosen by name. It sees samples and its settings, nothing else:
+// no setting of the rig, no truth, no seed, no clock.
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimator/types.h"
+
+namespace waverig::estimator {
+
+// What a laboratory knows of its sensor beforehand (data sheet and calibration certificate), for the uncertainty
+// budget. Standard uncertainties, k = 1. The defaults are a fresh six-position calibration of a data-sheet part.
+struct SensorKnowledge {
+  double gravity_mps2 = kStandardGravity;          // at the place of measurement
+  double accel_bias_sigma_mps2 = 2e-3;             // what the calibration leaves, per axis, ageing included
+  double accel_scale_sigma = 3e-4;                 // relative
+  double accel_misalignment_sigma_rad = 3e-4;
+  double gyro_bias_sigma_radps = 0.2 * kDegree;
+  double gyro_scale_sigma = 0.01;                  // relative
+};
+
+struct MethodSettings {
+  SensorKnowledge sensor;
+  double fixed_lag_s = 0;                          // for methods that may answer late
+};
+
+// Receives what a method finds; a method may call it at any time during add() and finish().
+class Output {
+ public:
+  virtual ~Output() = default;
+  virtual void heave(const HeaveSample&) {}
+  virtual void wave(const Wave&) {}
+  virtual void sea(const SeaState&) {}
+};
+
+class Method {
+ public:
+  virtual ~Method() = default;
+  virtual void add(const ImuSample& sample, Output& output) = 0;
+  virtual void finish(Output& output) = 0;         // the record ends: give what is still held back
+};
+
+// Throws UserError for an unknown name, naming the known ones.
+std::unique_ptr<Method> make_method(std::string_view name, const MethodSettings& settings);
+std::vector<std::string> method_names();
+
+}  // namespace waverig::estimator
