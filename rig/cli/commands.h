@@ -1,0 +1,29 @@
+// The commands of the waverig program, one file each. A registration adds a subcommand to the parser;
+// its callback stores what to run, and main() runs it and turns errors into exit statuses.
+#pragma once
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace waverig::cli {
+
+using Command = std::function<int()>;   // returns the exit status: 0 done, 1 the answer is no
+
+void add_sweep(CLI::App& app, Command& chosen);
+void add_plan(CLI::App& app, Command& chosen);
+void add_estimate(CLI::App& app, Command& chosen);
+void add_evaluate(CLI::App& app, Command& chosen);
+void add_figures(CLI::App& app, Command& chosen);
+void add_report(CLI::App& app, Command& chosen);
+void add_film(CLI::App& app, Command& chosen);
+void add_merge(CLI::App& app, Command& chosen);
+void add_compare(CLI::App& app, Command& chosen);
+void add_calibrate(CLI::App& app, Command& chosen);
+void add_calibrations(CLI::App& app, Command& chosen);
+void add_bench(CLI::App& app, Command& chosen);
+void add_analyse(CLI::App& app, Command& chosen);
+void add_node(CLI::App& app, Command& chosen);
+
+}  // namespace waverig::cli
