@@ -1,0 +1,193 @@
+#include "rig/settings/toml_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "lcmtypes/error.h"
+
+namespace waverig::rig {
+namespace {
+
+std::string shown(const toml::node& node) {
+  std::ostringstream out;
+  node.visit([&](const auto& n) { out << n; });
+  std::string text = out.str();
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text.size() > 60 ? text.substr(0, 57) + "…" : text;
+}
+
+std::string shown(const Range& range) {
+  if (std::isinf(range.low) && std::isinf(range.high)) return "a finite number";
+  if (std::isinf(range.high)) return fmt::format("a number of at least {}", range.low);
+  if (std::isinf(range.low)) return fmt::format("a number of at most {}", range.high);
+  return fmt::format("a number from {} to {}", range.low, range.high);
+}
+
+bool inside(double value, const Range& range) { return std::isfinite(value) && value >= range.low && value <= range.high; }
+
+std::string missing(std::string_view expected) { return fmt::format("is missing: expected {}", expected); }
+
+}  // namespace
+
+bool TomlTable::has(std::string_view key) const { return shared_->node != nullptr && shared_->node->contains(key); }
+
+const toml::node* TomlTable::find(std::string_view key) {
+  shared_->asked.emplace(key);
+  return shared_->node == nullptr ? nullptr : shared_->node->get(key);
+}
+
+std::string TomlTable::name_of(std::string_view key) const { return shared_->prefix + std::string(key); }
+
+std::string TomlTable::place_of(std::string_view key) const {
+  const toml::node* node = shared_->node == nullptr ? nullptr : shared_->node->get(key);
+  return fmt::format("{}:{}", shared_->file, node == nullptr ? shared_->line : node->source().begin.line);
+}
+
+void TomlTable::refuse(std::string_view key, std::string_view expected) const {
+  const toml::node* node = shared_->node == nullptr ? nullptr : shared_->node->get(key);
+  if (node == nullptr) throw UserError(fmt::format("{}: {} {}", place_of(key), name_of(key), missing(expected)));
+  throw UserError(fmt::format("{}: {} = {}: expected {}", place_of(key), name_of(key), shown(*node), expected));
+}
+
+double TomlTable::number(std::string_view key, std::optional<double> fallback, Range range) {
+  const toml::node* node = find(key);
+  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr || !node->is_number()) refuse(key, shown(range));
+  const double value = *node->value<double>();
+  if (!inside(value, range)) refuse(key, shown(range));
+  return value;
+}
+
+std::int64_t TomlTable::integer(std::string_view key, std::optional<std::int64_t> fallback, Range range) {
+  const toml::node* node = find(key);
+  const auto expected = [&] { return "a whole number, " + shown(range); };
+  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr || !node->is_integer()) refuse(key, expected());
+  const std::int64_t value = *node->value<std::int64_t>();
+  if (!inside(static_cast<double>(value), range)) refuse(key, expected());
+  return value;
+}
+
+bool TomlTable::boolean(std::string_view key, std::optional<bool> fallback) {
+  const toml::node* node = find(key);
+  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr || !node->is_boolean()) refuse(key, "true or false");
+  return *node->value<bool>();
+}
+
+std::string TomlTable::text(std::string_view key, std::optional<std::string> fallback) {
+  const toml::node* node = find(key);
+  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr || !node->is_string()) refuse(key, "a text in quotes");
+  return *node->value<std::string>();
+}
+
+std::string TomlTable::choice(std::string_view key, std::optional<std::string> fallback,
+                              const std::vector<std::string>& allowed) {
+  const toml::node* node = find(key);
+  if (node == nullptr && fallback) return *fallback;
+  if (node != nullptr && node->is_string()) {
+    const std::string value = *node->value<std::string>();
+    for (const auto& a : allowed)
+      if (value == a) return value;
+  }
+  refuse(key, fmt::format("one of \"{}\"", fmt::join(allowed, "\", \"")));
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key, std::optional<std::vector<double>> fallback, Range range) {
+  const toml::node* node = find(key);
+  const auto expected = [&] { return "a list with at least one number, each " + shown(range); };
+  if (node == nullptr && fallback) return *fallback;
+  const toml::array* array = node == nullptr ? nullptr : node->as_array();
+  if (array == nullptr || array->empty()) refuse(key, expected());
+  std::vector<double> values;
+  for (const toml::node& element : *array) {
+    if (!element.is_number() || !inside(*element.value<double>(), range)) refuse(key, expected());
+    values.push_back(*element.value<double>());
+  }
+  return values;
+}
+
+std::vector<std::string> TomlTable::texts(std::string_view key, std::optional<std::vector<std::string>> fallback) {
+  const toml::node* node = find(key);
+  const char* expected = "a list with at least one text in quotes";
+  if (node == nullptr && fallback) return *fallback;
+  const toml::array* array = node == nullptr ? nullptr : node->as_array();
+  if (array == nullptr || array->empty()) refuse(key, expected);
+  std::vector<std::string> values;
+  for (const toml::node& element : *array) {
+    if (!element.is_string()) refuse(key, expected);
+    values.push_back(*element.value<std::string>());
+  }
+  return values;
+}
+
+TomlTable TomlTable::table(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node != nullptr && !node->is_table()) refuse(key, "a table");
+  auto child = std::make_shared<Shared>();
+  child->node = node == nullptr ? nullptr : node->as_table();
+  child->file = shared_->file;
+  child->prefix = name_of(key) + ".";
+  child->line = node == nullptr ? shared_->line : node->source().begin.line;
+  shared_->children.push_back(child);
+  return TomlTable(std::move(child));
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) {
+  std::vector<TomlTable> result;
+  const toml::node* node = find(key);
+  if (node == nullptr) return result;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) refuse(key, "a list of tables");
+  std::size_t index = 0;
+  for (const toml::node& element : *array) {
+    if (!element.is_table()) refuse(key, "a list of tables");
+    auto child = std::make_shared<Shared>();
+    child->node = element.as_table();
+    child->file = shared_->file;
+    child->prefix = fmt::format("{}[{}].", name_of(key), index++);
+    child->line = element.source().begin.line;
+    shared_->children.push_back(child);
+    result.push_back(TomlTable(std::move(child)));
+  }
+  return result;
+}
+
+void TomlTable::refuse_unknown_keys() const { refuse_unknown(*shared_); }
+
+void TomlTable::refuse_unknown(const Shared& shared) {
+  if (shared.node == nullptr) return;
+  for (const auto& [key, node] : *shared.node)
+    if (!shared.asked.contains(key.str()))
+      throw UserError(fmt::format("{}:{}: {}{} = {}: unknown key; expected one of {}", shared.file,
+                                  node.source().begin.line, shared.prefix, key.str(), shown(node),
+                                  fmt::join(shared.asked, ", ")));
+  for (const auto& child : shared.children) refuse_unknown(*child);
+}
+
+TomlFile::TomlFile(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf()))
+    throw UserError(fmt::format("{}: cannot be read; expected a TOML file", path.string()));
+  *this = TomlFile(text.str(), path.string());
+}
+
+TomlFile::TomlFile(std::string_view text, const std::string& name) {
+  try {
+    document_ = std::make_unique<toml::table>(toml::parse(text, name));
+  } catch (const toml::parse_error& error) {
+    throw UserError(fmt::format("{}:{}: {}; expected TOML", name, error.source().begin.line, error.description()));
+  }
+  auto shared = std::make_shared<TomlTable::Shared>();
+  shared->node = document_.get();
+  shared->file = name;
+  root_.reset(new TomlTable(std::move(shared)));
+}
+
+}  // namespace waverig::rig
