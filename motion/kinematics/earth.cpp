@@ -61,7 +61,8 @@ Vector3d gravitation_E(const Vector3d& r_E, const EarthConstants& earth) {
 }
 
 Vector3d gravity_E(const Vector3d& r_E, const EarthConstants& earth) {
-  const double w2 = earth.rate_radps * earth.rate_radps;  // w_ie along z: -w x (w x R) points away from the axis
+  const double w2 =
+      earth.rate_radps * earth.rate_radps;  // w_ie along z: -w x (w x R) points away from the axis
   return gravitation_E(r_E, earth) + w2 * Vector3d(r_E.x(), r_E.y(), 0);
 }
 
@@ -79,9 +80,8 @@ LocalEarth local_earth(const Place& place, const EarthConstants& earth) {
     throw UserError("latitude " + std::to_string(place.latitude_rad / kDegree) +
                     " deg: expected a place between the poles, where north and east are defined");
   const Radii radii = radii_of_curvature(place.latitude_rad, earth);
-  return {gravity_N(place, earth), earth_rate_N(place.latitude_rad, earth),
-          radii.meridian_m + place.height_m, radii.prime_vertical_m + place.height_m,
-          std::tan(place.latitude_rad)};
+  return {gravity_N(place, earth), earth_rate_N(place.latitude_rad, earth), radii.meridian_m + place.height_m,
+          radii.prime_vertical_m + place.height_m, std::tan(place.latitude_rad)};
 }
 
 Vector3d transport_rate_N(const LocalEarth& local, const Vector3d& v_N) {
