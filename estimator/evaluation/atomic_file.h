@@ -1,0 +1,32 @@
+// Files that are there whole or not at all: written beside their name, flushed to the disk, then renamed.
+#pragma once
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+namespace waverig::evaluation {
+
+class AtomicFile {
+ public:
+  // Throws UserError where the folder cannot be written.
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();   // without commit() nothing remains
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::string_view text);
+  // Throws std::runtime_error where the disk did not take everything.
+  void commit();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  std::filesystem::path path_, temporary_;
+  std::unique_ptr<std::FILE, Closer> file_;
+};
+
+void write_atomically(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace waverig::evaluation

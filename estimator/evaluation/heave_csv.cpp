@@ -1,0 +1,44 @@
+#include "estimator/evaluation/heave_csv.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "estimator/evaluation/csv_reader.h"
+
+namespace waverig::evaluation {
+
+HeaveSeries read_heave_csv(const std::filesystem::path& path) {
+  CsvReader csv(path);
+  if (csv.columns().size() < 2 || csv.columns()[0] != "utime" || csv.columns()[1] != "heave_m")
+    throw csv.header_complaint("utime,heave_m[,heave_sigma_m]");
+  const int sigma = csv.find("heave_sigma_m"), moving = csv.find("moving");
+  HeaveSeries series;
+  while (csv.next()) {
+    const std::int64_t utime = csv.integer(0);
+    if (!series.utime.empty() && utime <= series.utime.back())
+      throw csv.complaint(0, fmt::format("a time after {} (microseconds that grow)", series.utime.back()));
+    series.utime.push_back(utime);
+    series.heave_m.push_back(csv.number_or_nan(1));
+    series.heave_sigma_m.push_back(sigma < 0 ? estimator::kUnknown : csv.number_or_nan(sigma));
+    if (moving >= 0) series.moving.push_back(csv.number(moving) != 0);
+  }
+  if (series.utime.empty())
+    throw UserError(fmt::format("{}: no heave after the header; expected at least one row", csv.name()));
+  return series;
+}
+
+HeaveCsvWriter::HeaveCsvWriter(const std::filesystem::path& path) : file_(path) {
+  file_.write("utime,heave_m,heave_sigma_m\n");
+}
+
+void HeaveCsvWriter::write(const estimator::HeaveSample& s) {
+  if (std::isnan(s.heave_sigma_m))
+    file_.write(fmt::format("{},{:.6f},\n", s.utime, s.heave_m));
+  else
+    file_.write(fmt::format("{},{:.6f},{:.6f}\n", s.utime, s.heave_m, s.heave_sigma_m));
+}
+
+void HeaveCsvWriter::close() { file_.commit(); }
+
+}  // namespace waverig::evaluation

@@ -1,0 +1,186 @@
+#include "estimator/evaluation/run_judge.h"
+
+#include <cmath>
+#include <numbers>
+#include <waverig/run_t.hpp>
+#include <waverig/truth_t.hpp>
+
+#include "estimator/evaluation/bound.h"
+#include "estimator/evaluation/height_statistics.h"
+#include "estimator/evaluation/run_record.h"
+#include "lcmtypes/flags.h"
+#include "lcmtypes/phase.h"
+
+namespace waverig::evaluation {
+namespace {
+
+struct TrueSea {
+  double hm0_m = estimator::kUnknown, tm02_s = estimator::kUnknown;
+};
+
+TrueSea true_sea(const TruthSeries& truth, std::int64_t begin, std::int64_t end) {
+  double n = 0, h = 0, hh = 0, r = 0, rr = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth.utime(i) < begin || truth.utime(i) >= end) continue;
+    const auto p = truth.point(i);
+    n += 1;
+    h += p.heave_m;
+    hh += p.heave_m * p.heave_m;
+    r += p.heave_rate_mps;
+    rr += p.heave_rate_mps * p.heave_rate_mps;
+  }
+  if (n < 2) return {};
+  const double m0 = hh / n - h * h / (n * n), m2 = rr / n - r * r / (n * n);   // m2 in (m rad/s)^2
+  return {4 * std::sqrt(m0), 2 * std::numbers::pi * std::sqrt(m0 / m2)};
+}
+
+}  // namespace
+
+RunJudge::RunJudge(std::string run, const JudgeSettings& settings) : run_(std::move(run)), settings_(settings) {}
+
+RunJudge::OfMethod& RunJudge::of(std::string_view method) {
+  const auto at = methods_.find(method);
+  return at != methods_.end() ? at->second : methods_.emplace(method, OfMethod{}).first->second;
+}
+
+void RunJudge::add(const run_t& message) {
+  period_s_ = message.period_s;
+  height_m_ = message.height_m;
+  repeat_ = message.repeat;
+  if (message.phase == static_cast<std::int32_t>(Phase::kSteady)) {
+    if (!begun_) steady_begin_ = message.utime;
+    begun_ = true;
+  } else if (begun_ && !ended_) {
+    steady_end_ = message.utime;
+    ended_ = true;
+  }
+}
+
+void RunJudge::add(const truth_t& message) {
+  truth_.add(message.utime, message.heave_m, message.heave_rate_mps);
+  for (auto& [name, method] : methods_)
+    if (!method.pending.empty()) settle(method);
+}
+
+void RunJudge::add(std::string_view method, const estimator::HeaveSample& heave) {
+  if (!steady(heave.utime) || !std::isfinite(heave.heave_m)) return;
+  OfMethod& m = of(method);
+  const PendingHeave sample{heave.utime, heave.heave_m};
+  if (truth_.empty() || truth_.last_utime() < heave.utime)
+    m.pending.push_back(sample);
+  else
+    compare(m.sums, sample);
+}
+
+void RunJudge::add(std::string_view method, const estimator::Wave& wave) { of(method).waves.push_back(wave); }
+void RunJudge::add(std::string_view method, const estimator::SeaState& sea) { of(method).seas.push_back(sea); }
+
+bool RunJudge::steady(std::int64_t utime) const {
+  return begun_ && utime >= steady_begin_ && (!ended_ || utime < steady_end_);
+}
+
+void RunJudge::settle(OfMethod& method) {
+  std::size_t done = 0;
+  while (done < method.pending.size() && method.pending[done].utime <= truth_.last_utime())
+    compare(method.sums, method.pending[done++]);
+  method.pending.erase(method.pending.begin(), method.pending.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
+void RunJudge::compare(HeaveSums& s, const PendingHeave& heave) const {
+  const TruthSeries::Point truth = truth_.at(heave.utime);
+  if (!std::isfinite(truth.heave_m)) return;
+  const double h = heave.heave_m, t = truth.heave_m, r = truth.heave_rate_mps, e = h - t;
+  s.n += 1;
+  s.e += e;
+  s.ee += e * e;
+  s.h += h;
+  s.t += t;
+  s.r += r;
+  s.tt += t * t;
+  s.rr += r * r;
+  s.tr += t * r;
+  s.ht += h * t;
+  s.hr += h * r;
+}
+
+std::vector<RunResult> RunJudge::finish() {
+  if (begun_ && !ended_ && !truth_.empty()) steady_end_ = truth_.last_utime() + 1;
+  std::vector<RunResult> results;
+  for (auto& [name, method] : methods_) results.push_back(result_of(name, method));
+  return results;
+}
+
+RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
+  RunResult result;
+  result.run = run_;
+  result.method = name;
+  result.repeat = repeat_;
+  result.period_s = period_s_;
+  result.height_m = height_m_;
+  result.noise_density_mps2_rthz = settings_.noise_density_mps2_rthz;
+  result.seas = std::move(method.seas);
+
+  HeightAccumulator accumulator;
+  for (const estimator::Wave& wave : method.waves) {
+    const std::int64_t end = wave.start_utime + std::llround(wave.period_s / kMicrosecond);
+    const bool whole = (wave.flags & flag::kIncomplete) == 0 && std::isfinite(wave.height_m);
+    if (!whole || !begun_ || wave.start_utime < steady_begin_ || end > steady_end_) {
+      ++result.excluded_waves;
+      continue;
+    }
+    result.waves.push_back({wave, truth_.height_m(wave.start_utime, end)});
+    accumulator.add(result.waves.back());
+  }
+  accumulator.close_record();
+  const double bound_m = height_bound_m({period_s_, settings_.noise_density_mps2_rthz, settings_.sample_rate_hz});
+  result.statistics = accumulator.statistics(height_m_, bound_m);
+
+  if (begun_) {
+    const TrueSea sea = true_sea(truth_, steady_begin_, steady_end_);
+    result.true_hm0_m = sea.hm0_m;
+    result.true_tm02_s = sea.tm02_s;
+  }
+  const HeaveSums& s = method.sums;
+  if (s.n < 2) return result;
+  result.heave_rmse_m = std::sqrt(std::max(0.0, s.ee / s.n - s.e * s.e / (s.n * s.n)));
+  // heave = a true + b rate. For a harmonic of rate w: a = G cos(w lag), b = -G sin(w lag) / w.
+  const double tt = s.tt - s.t * s.t / s.n, rr = s.rr - s.r * s.r / s.n, tr = s.tr - s.t * s.r / s.n;
+  const double ht = s.ht - s.h * s.t / s.n, hr = s.hr - s.h * s.r / s.n;
+  const double determinant = tt * rr - tr * tr;
+  if (!(determinant > 0)) return result;
+  const double a = (ht * rr - hr * tr) / determinant, b = (hr * tt - ht * tr) / determinant;
+  const double w = std::sqrt(rr / tt);
+  result.heave_gain = std::hypot(a, b * w);
+  result.heave_lag_s = std::atan2(-b * w, a) / w;
+  return result;
+}
+
+std::vector<RunResult> judge(const RunRecord& record, const JudgeSettings& settings) {
+  RunJudge judge(record.run, settings);
+  run_t phase{};
+  phase.repeat = record.repeat;
+  phase.period_s = record.period_s;
+  phase.height_m = record.height_m;
+  phase.utime = record.steady_begin_utime;
+  phase.phase = static_cast<std::int32_t>(Phase::kSteady);
+  judge.add(phase);
+  phase.utime = record.steady_end_utime;
+  phase.phase = static_cast<std::int32_t>(Phase::kRampOut);
+  judge.add(phase);
+  for (const TruthSample& sample : record.truth) {
+    truth_t truth{};
+    truth.utime = sample.utime;
+    truth.heave_m = sample.heave_m;
+    truth.heave_rate_mps = sample.heave_rate_mps;
+    judge.add(truth);
+  }
+  for (const auto& [method, samples] : record.heave)
+    for (const estimator::HeaveSample& heave : samples) judge.add(method, heave);
+  for (const auto& [method, waves] : record.waves)
+    for (const estimator::Wave& wave : waves) judge.add(method, wave);
+  for (const auto& [method, seas] : record.seas)
+    for (const estimator::SeaState& sea : seas) judge.add(method, sea);
+  return judge.finish();
+}
+
+}  // namespace waverig::evaluation

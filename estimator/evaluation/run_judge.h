@@ -1,0 +1,75 @@
+// RunJudge: the evaluator's memory of one run. It is fed the messages of the bus one by one, in any order between
+// channels, and tells at the end what each method's estimates are worth against the truth.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimator/evaluation/results.h"
+#include "estimator/evaluation/truth_series.h"
+
+namespace waverig {
+class run_t;
+class truth_t;
+}  // namespace waverig
+
+namespace waverig::evaluation {
+
+struct JudgeSettings {
+  double noise_density_mps2_rthz = estimator::kUnknown;   // one-sided, of the vertical acceleration; for the bound
+  double sample_rate_hz = 100;                            // of the sensor; for the bound
+};
+
+struct RunRecord;
+
+class RunJudge {
+ public:
+  RunJudge(std::string run, const JudgeSettings& settings);
+
+  void add(const run_t& message);
+  void add(const truth_t& message);
+  void add(std::string_view method, const estimator::HeaveSample& heave);
+  void add(std::string_view method, const estimator::Wave& wave);
+  void add(std::string_view method, const estimator::SeaState& sea);
+
+  // Waves that lie whole within the steady part are judged, all others only counted. One result a method, by name.
+  std::vector<RunResult> finish();
+
+ private:
+  // Heave against truth: sums for the error's scatter and for the regression on the true heave and its rate.
+  struct HeaveSums {
+    double n = 0, e = 0, ee = 0, h = 0, t = 0, r = 0, tt = 0, rr = 0, tr = 0, ht = 0, hr = 0;
+  };
+  struct PendingHeave {
+    std::int64_t utime;
+    double heave_m;
+  };
+  struct OfMethod {
+    std::vector<estimator::Wave> waves;
+    std::vector<estimator::SeaState> seas;
+    std::vector<PendingHeave> pending;   // heave that the truth has not reached yet
+    HeaveSums sums;
+  };
+
+  OfMethod& of(std::string_view method);
+  bool steady(std::int64_t utime) const;
+  void settle(OfMethod& method);
+  void compare(HeaveSums& sums, const PendingHeave& heave) const;
+  RunResult result_of(const std::string& name, OfMethod& method) const;
+
+  std::string run_;
+  JudgeSettings settings_;
+  double period_s_ = estimator::kUnknown, height_m_ = estimator::kUnknown;
+  int repeat_ = 0;
+  bool begun_ = false, ended_ = false;
+  std::int64_t steady_begin_ = 0, steady_end_ = 0;
+  TruthSeries truth_;
+  std::map<std::string, OfMethod, std::less<>> methods_;
+};
+
+// The same for a run that was read back from its log.
+std::vector<RunResult> judge(const RunRecord& record, const JudgeSettings& settings);
+
+}  // namespace waverig::evaluation
