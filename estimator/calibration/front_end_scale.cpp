@@ -161,6 +161,7 @@ ScaleFactors scale_factors_by_calibrator(const std::vector<FrontEndReading>& rea
     g.row_A[j] = rows.y_A[j] * range.relative / kCoverage;
     sources.push_back({"calibrator drift from zero to level", unit(j, knowledge.floor_drift * range.floor_A)});
     sources.push_back({"switch leakage", unit(j, knowledge.leakage_limit_A * kRectangular)});
+    sources.push_back({"bias wander from zero to level", unit(j, knowledge.bias_wander_A)});
     sources.push_back({"counting and noise, level", unit(j, reading_sigma_A(r, K, knowledge)), false, 'A'});
     sources.push_back({"clock ratio", unit(j, r.level_A * knowledge.clock_ratio_sigma)});
     auto& shared = zero_noise.try_emplace(zero, ErrorSource{"counting and noise, zero", VectorXd::Zero(n), false, 'A'})
@@ -219,6 +220,8 @@ ScaleFactors scale_factors_by_dmm(const std::vector<FrontEndReading>& readings, 
       sources.push_back({"counting and noise", pair_source(j, sign * sigma, sigma), false, 'A'});
       const double dmm = 0.5 * knowledge.dmm_drift_A;
       sources.push_back({"DMM drift", pair_source(j, sign * dmm, dmm)});
+      const double wander = 0.5 * knowledge.bias_wander_A;
+      sources.push_back({"bias wander between polarities", pair_source(j, sign * wander, wander)});
       const double leak = 0.5 * knowledge.leakage_limit_A * kRectangular;
       sources.push_back({"switch leakage", pair_source(j, sign * leak, leak)});
     }

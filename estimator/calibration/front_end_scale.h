@@ -38,6 +38,7 @@ struct ScaleFactorKnowledge {
   double floor_drift = 0.05;          // standard deviation of the floor's change from zero to level reading, of the floor
   double leakage_limit_A = 0.1e-9;    // of the switch, rectangular
   double noise_A_sqrt_s = 0;          // white current noise of the channel, times the root of the averaging time
+  double bias_wander_A = 0;           // standard deviation of the channel's bias change from zero to level reading
   double clock_ratio_sigma = 1e-8;    // relative, of one reading
   double dmm_relative = 12e-6;        // 95 %
   double dmm_drift_A = 1e-9;          // standard deviation of the DMM's offset between its two readings

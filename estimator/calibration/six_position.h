@@ -1,0 +1,52 @@
+// Six-position calibration of an accelerometer, Lee 2014, eq. (1) and Table 1: each axis up and down gives 18
+// equations for the 12 unknowns of M and b, solved by least squares.
+//
+// Two things make it uncertain: the scatter of each position's mean, and the angle by which the fixture misses the
+// position. The angle d shows as M (f x d): first order across the axis, second order along it. The covariance
+// follows from both (the misses of a position are common to its three equations).
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "estimator/calibration/accelerometer_calibration.h"
+#include "motion/kinematics/frames.h"
+
+namespace waverig::estimator {
+
+// The mean reading in one position and its uncertainty.
+struct PositionReading {
+  Vector3d f_B = Vector3d::Zero();            // true specific force as stated: +-g along one axis, m/s^2
+  Vector3d mean_mps2 = Vector3d::Zero();      // reading by nominal sensitivities
+  Matrix3d covariance = Matrix3d::Zero();     // of the mean, (m/s^2)^2
+};
+
+// Gathers one position's samples. The mean's covariance is told from means of batches, since what is correlated
+// from sample to sample would make sigma / sqrt(n) too small.
+class PositionRecorder {
+ public:
+  explicit PositionRecorder(std::int64_t samples_per_batch) : samples_per_batch_(samples_per_batch) {}
+  void add(const Vector3d& reading);
+  std::int64_t samples() const { return samples_; }
+  Vector3d mean() const;              // of the whole batches
+  Matrix3d mean_covariance() const;   // needs at least 2 batches; zero before
+
+ private:
+  std::int64_t samples_per_batch_;
+  std::int64_t samples_ = 0, in_batch_ = 0, batches_ = 0;
+  Vector3d batch_sum_ = Vector3d::Zero(), mean_ = Vector3d::Zero();
+  Matrix3d sum_of_squares_ = Matrix3d::Zero();   // about the running mean (Welford 1962)
+};
+
+struct SixPositionFit {
+  AccelerometerCalibration calibration;
+  std::array<Vector3d, 6> residual_mps2;   // reading minus fit
+  double residual_rms_mps2 = 0;
+  double chi_square = 0;                   // of the residuals, about 6 where the stated uncertainties are right
+  int degrees_of_freedom = 6;
+};
+
+// fixture_sigma_rad: standard uncertainty of the fixture's angles about each axis. Positions in any order.
+// Throws UserError where the positions do not determine all unknowns.
+SixPositionFit fit_six_positions(const std::array<PositionReading, 6>& readings, double fixture_sigma_rad);
+
+}  // namespace waverig::estimator

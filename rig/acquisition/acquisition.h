@@ -1,0 +1,85 @@
+// Acquisition: frame bytes to raw counts to calibrated samples, the same for a serial line and for memory.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "estimator/calibration/accelerometer_calibration.h"
+#include "estimator/types.h"
+#include "rig/frontend/frame_codec.h"
+
+namespace waverig::rig {
+
+// One decoded frame of the sensor unit; the twin of counts_t.
+struct UnitCounts {
+  std::int64_t utime = 0;   // middle of the counting interval
+  std::int64_t seq = 0;     // unwrapped frame counter
+  Eigen::Vector3i accel_positive = Eigen::Vector3i::Zero(), accel_negative = Eigen::Vector3i::Zero();
+  Eigen::Vector3i gyro = Eigen::Vector3i::Zero(), mag = Eigen::Vector3i::Zero();
+  std::int32_t temperature = 0;
+  std::int32_t flags = 0;   // lcmtypes/flags.h
+};
+
+// What the counts are worth before calibration: the front end's and the sensors' sensitivities, from their data
+// sheets or, for the front end, from its own calibration.
+struct Sensitivities {
+  double sample_interval_s = 0.01;
+  Vector3d positive_quantum_C = Vector3d::Constant(1), negative_quantum_C = Vector3d::Constant(1);   // K_P, K_N
+  Vector3d converter_bias_A = Vector3d::Zero();                                                      // i_AFbias
+  double current_per_accel_ApMps2 = 1;      // sensor and voltage-to-current stage
+  double accel_range_mps2 = 0;              // 0: no limit known
+  double gyro_count_radps = 1;
+  double mag_count_uT = 0.1;
+};
+
+struct UnitSettings;
+// The data sheet's figures for a unit of that kind: what a laboratory knows before any calibration.
+Sensitivities nominal_sensitivities(const UnitSettings& settings);
+
+// m = soft_iron (reading - hard_iron).
+struct MagnetometerCorrection {
+  Matrix3d soft_iron = Matrix3d::Identity();
+  Vector3d hard_iron_uT = Vector3d::Zero();
+};
+
+class Acquisition {
+ public:
+  explicit Acquisition(const Sensitivities& sensitivities, const FrameLayout& layout = default_frame_layout());
+
+  // From now on samples are calibrated; without it they carry flag::kUncalibrated.
+  void apply(const estimator::AccelerometerCalibration& accelerometer, const estimator::GyroscopeCalibration& gyroscope);
+  void apply(const MagnetometerCorrection& magnetometer) { magnetometer_ = magnetometer; }
+
+  // Bytes from the wire, in any pieces; sink(const UnitCounts&, const estimator::ImuSample&) for each intact frame.
+  template <class Sink>
+  void add(std::span<const std::uint8_t> bytes, Sink&& sink) {
+    decoder_.add(bytes);
+    while (const Frame* frame = decoder_.next()) {
+      const UnitCounts counts = counts_of(*frame);
+      sink(counts, sample_of(counts));
+    }
+  }
+
+  // The next sample begins a record: its seq is 0.
+  void begin_record() { new_record_ = true; }
+
+  const FrameStatistics& statistics() const { return decoder_.statistics(); }
+
+ private:
+  UnitCounts counts_of(const Frame& frame) const;
+  estimator::ImuSample sample_of(const UnitCounts& counts);
+
+  Sensitivities sensitivities_;
+  FrameDecoder decoder_;
+  std::array<std::size_t, 15> slot_;
+  FrameField temperature_field_;
+  Vector3d positive_mps2_, negative_mps2_, bias_mps2_;   // of one count, and of the converter's bias
+  double saturation_mps2_ = 0;
+  estimator::AccelerometerCorrection accelerometer_;
+  Vector3d gyro_offset_radps_ = Vector3d::Zero();
+  MagnetometerCorrection magnetometer_;
+  bool calibrated_ = false, new_record_ = true;
+  std::int64_t first_seq_ = 0;
+};
+
+}  // namespace waverig::rig
