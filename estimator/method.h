@@ -14,9 +14,11 @@ namespace waverig::estimator {
 // budget. Standard uncertainties, k = 1. The defaults are a fresh six-position calibration of a data-sheet part.
 struct SensorKnowledge {
   double gravity_mps2 = kStandardGravity;          // at the place of measurement
+  double gravity_sigma_mps2 = 0.015;               // how well it is known; small: the mean |f| then tells scale and bias
   double accel_bias_sigma_mps2 = 2e-3;             // what the calibration leaves, per axis, ageing included
   double accel_scale_sigma = 3e-4;                 // relative
   double accel_misalignment_sigma_rad = 3e-4;
+  double accel_slope_sigma = 0;                    // relative; slope at 1 g against the chord from -1 g to 1 g
   double gyro_bias_sigma_radps = 0.2 * kDegree;
   double gyro_scale_sigma = 0.01;                  // relative
 };
