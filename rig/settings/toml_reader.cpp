@@ -53,47 +53,66 @@ void TomlTable::refuse(std::string_view key, std::string_view expected) const {
   throw UserError(fmt::format("{}: {} = {}: expected {}", place_of(key), name_of(key), shown(*node), expected));
 }
 
+namespace {
+
+toml::array toml_of(const auto& values) {
+  toml::array array;
+  for (const auto& value : values) array.push_back(value);
+  return array;
+}
+
+}  // namespace
+
+template <class Value>
+Value TomlTable::resolve(std::string_view key, Value value) {
+  if constexpr (requires { value.begin(); } && !std::is_same_v<Value, std::string>)
+    shared_->resolved->insert_or_assign(key, toml_of(value));
+  else
+    shared_->resolved->insert_or_assign(key, value);
+  return value;
+}
+
 double TomlTable::number(std::string_view key, std::optional<double> fallback, Range range) {
   const toml::node* node = find(key);
-  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr && fallback) return resolve(key, *fallback);
   if (node == nullptr || !node->is_number()) refuse(key, shown(range));
   const double value = *node->value<double>();
   if (!inside(value, range)) refuse(key, shown(range));
-  return value;
+  return resolve(key, value);
 }
 
 std::int64_t TomlTable::integer(std::string_view key, std::optional<std::int64_t> fallback, Range range) {
   const toml::node* node = find(key);
   const auto expected = [&] { return "a whole number, " + shown(range); };
-  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr && fallback) return resolve(key, *fallback);
   if (node == nullptr || !node->is_integer()) refuse(key, expected());
   const std::int64_t value = *node->value<std::int64_t>();
   if (!inside(static_cast<double>(value), range)) refuse(key, expected());
-  return value;
+  return resolve(key, value);
 }
 
 bool TomlTable::boolean(std::string_view key, std::optional<bool> fallback) {
   const toml::node* node = find(key);
-  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr && fallback) return resolve(key, *fallback);
   if (node == nullptr || !node->is_boolean()) refuse(key, "true or false");
-  return *node->value<bool>();
+  return resolve(key, *node->value<bool>());
 }
 
 std::string TomlTable::text(std::string_view key, std::optional<std::string> fallback) {
   const toml::node* node = find(key);
-  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr && fallback) return resolve(key, *fallback);
   if (node == nullptr || !node->is_string()) refuse(key, "a text in quotes");
-  return *node->value<std::string>();
+  return resolve(key, *node->value<std::string>());
 }
 
 std::string TomlTable::choice(std::string_view key, std::optional<std::string> fallback,
                               const std::vector<std::string>& allowed) {
   const toml::node* node = find(key);
-  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr && fallback) return resolve(key, *fallback);
   if (node != nullptr && node->is_string()) {
     const std::string value = *node->value<std::string>();
     for (const auto& a : allowed)
-      if (value == a) return value;
+      if (value == a) return resolve(key, value);
   }
   refuse(key, fmt::format("one of \"{}\"", fmt::join(allowed, "\", \"")));
 }
@@ -101,7 +120,7 @@ std::string TomlTable::choice(std::string_view key, std::optional<std::string> f
 std::vector<double> TomlTable::numbers(std::string_view key, std::optional<std::vector<double>> fallback, Range range) {
   const toml::node* node = find(key);
   const auto expected = [&] { return "a list with at least one number, each " + shown(range); };
-  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr && fallback) return resolve(key, *fallback);
   const toml::array* array = node == nullptr ? nullptr : node->as_array();
   if (array == nullptr || array->empty()) refuse(key, expected());
   std::vector<double> values;
@@ -109,13 +128,13 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::optional<std::
     if (!element.is_number() || !inside(*element.value<double>(), range)) refuse(key, expected());
     values.push_back(*element.value<double>());
   }
-  return values;
+  return resolve(key, values);
 }
 
 std::vector<std::string> TomlTable::texts(std::string_view key, std::optional<std::vector<std::string>> fallback) {
   const toml::node* node = find(key);
   const char* expected = "a list with at least one text in quotes";
-  if (node == nullptr && fallback) return *fallback;
+  if (node == nullptr && fallback) return resolve(key, *fallback);
   const toml::array* array = node == nullptr ? nullptr : node->as_array();
   if (array == nullptr || array->empty()) refuse(key, expected);
   std::vector<std::string> values;
@@ -123,7 +142,7 @@ std::vector<std::string> TomlTable::texts(std::string_view key, std::optional<st
     if (!element.is_string()) refuse(key, expected);
     values.push_back(*element.value<std::string>());
   }
-  return values;
+  return resolve(key, values);
 }
 
 TomlTable TomlTable::table(std::string_view key) {
@@ -134,6 +153,8 @@ TomlTable TomlTable::table(std::string_view key) {
   child->file = shared_->file;
   child->prefix = name_of(key) + ".";
   child->line = node == nullptr ? shared_->line : node->source().begin.line;
+  shared_->resolved->insert_or_assign(key, toml::table{});
+  child->resolved = shared_->resolved->get_as<toml::table>(key);
   shared_->children.push_back(child);
   return TomlTable(std::move(child));
 }
@@ -144,6 +165,8 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
   if (node == nullptr) return result;
   const toml::array* array = node->as_array();
   if (array == nullptr) refuse(key, "a list of tables");
+  shared_->resolved->insert_or_assign(key, toml::array{});
+  toml::array* resolved = shared_->resolved->get_as<toml::array>(key);
   std::size_t index = 0;
   for (const toml::node& element : *array) {
     if (!element.is_table()) refuse(key, "a list of tables");
@@ -152,6 +175,8 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
     child->file = shared_->file;
     child->prefix = fmt::format("{}[{}].", name_of(key), index++);
     child->line = element.source().begin.line;
+    resolved->push_back(toml::table{});
+    child->resolved = resolved->back().as_table();
     shared_->children.push_back(child);
     result.push_back(TomlTable(std::move(child)));
   }
@@ -184,10 +209,18 @@ TomlFile::TomlFile(std::string_view text, const std::string& name) {
   } catch (const toml::parse_error& error) {
     throw UserError(fmt::format("{}:{}: {}; expected TOML", name, error.source().begin.line, error.description()));
   }
+  resolved_ = std::make_unique<toml::table>();
   auto shared = std::make_shared<TomlTable::Shared>();
+  shared->resolved = resolved_.get();
   shared->node = document_.get();
   shared->file = name;
   root_.reset(new TomlTable(std::move(shared)));
+}
+
+std::string TomlFile::resolved() const {
+  std::ostringstream text;
+  text << *resolved_ << "\n";
+  return text.str();
 }
 
 }  // namespace waverig::rig

@@ -56,12 +56,15 @@ class TomlTable {
     const toml::table* node = nullptr;
     std::string file, prefix;
     std::uint32_t line = 1;
+    toml::table* resolved = nullptr;
     std::set<std::string, std::less<>> asked;
     std::vector<std::shared_ptr<Shared>> children;
   };
   explicit TomlTable(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
   const toml::node* find(std::string_view key);
   static void refuse_unknown(const Shared& shared);
+  template <class Value>
+  Value resolve(std::string_view key, Value value);
 
   std::shared_ptr<Shared> shared_;
 };
@@ -71,9 +74,13 @@ class TomlFile {
   explicit TomlFile(const std::filesystem::path& path);                 // throws UserError
   TomlFile(std::string_view text, const std::string& name);             // the text itself, for tests and stored settings
   TomlTable& root() { return *root_; }
+  // Replaces a value of the root before it is read, as a command-line option does.
+  void set(std::string_view key, std::int64_t value) { document_->insert_or_assign(key, value); }
+  // All that was asked for so far with the value it has, fallbacks included, as TOML: reading it gives the same again.
+  std::string resolved() const;
 
  private:
-  std::unique_ptr<toml::table> document_;
+  std::unique_ptr<toml::table> document_, resolved_;
   std::unique_ptr<TomlTable> root_;
 };
 

@@ -1,0 +1,76 @@
+#include "rig/campaign/run.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "lcmtypes/error.h"
+#include "rig/nodes/acquisition_node.h"
+#include "rig/nodes/estimator_node.h"
+#include "rig/nodes/evaluator_node.h"
+#include "rig/nodes/motion_node.h"
+#include "rig/nodes/recorder_node.h"
+#include "rig/nodes/simulated_rig.h"
+
+namespace waverig::rig {
+namespace {
+
+SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan) {
+  SimulatedRigSettings rig{.drive = campaign.drive, .arm = campaign.arm, .unit = unit.settings};
+  rig.drive.counts_per_turn = campaign.axis.counts_per_turn;
+  rig.drive.seed = plan.seed;
+  rig.radius_m = plan.setting.height_m / 2;
+  rig.noise_seed = plan.seed;
+  return rig;
+}
+
+motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPlan& plan) {
+  motion::ProfileSettings profile = campaign.sweep.profile;
+  profile.period_s = plan.setting.period_s;
+  return motion::RotationProfile(profile);
+}
+
+Acquisition acquisition_of(const CampaignUnit& unit) {
+  Acquisition acquisition(unit.sensitivities);
+  if (unit.calibrated) acquisition.apply(unit.calibration.accelerometer, unit.calibration.gyroscope);
+  return acquisition;
+}
+
+}  // namespace
+
+evaluation::JudgeSettings judge_settings(const CampaignUnit& unit) {
+  return {.noise_density_mps2_rthz = unit.settings.accelerometer.noise_density_mps2,
+          .sample_rate_hz = 1 / unit.settings.sample_interval_s};
+}
+
+std::vector<evaluation::RunResult> run_embedded(const CampaignSettings& campaign, const CampaignUnit& unit,
+                                                const RunPlan& plan, const std::filesystem::path& log) {
+  Bus bus("memq://");
+  std::optional<RecorderNode> recorder;
+  if (!log.empty()) recorder.emplace(bus, log);
+
+  SimulatedRig rig(bus, rig_settings(campaign, unit, plan), unit.tested, plan.start_utime);
+  MotionNode motion(bus, rig.drive(), campaign.axis, profile_of(campaign, plan),
+                    {plan.setting.period_s, plan.setting.height_m, plan.repeat});
+  AcquisitionNode acquisition(bus, acquisition_of(unit));
+  std::vector<std::unique_ptr<EstimatorNode>> estimators;
+  for (const std::string& method : campaign.methods)
+    estimators.push_back(std::make_unique<EstimatorNode>(bus, method, unit.methods));
+  EvaluatorNode evaluator(bus, plan.name, judge_settings(unit));
+
+  const double control_period_s = campaign.axis.control_period_s;
+  const auto control_period_us = static_cast<std::int64_t>(control_period_s * 1e6);
+  for (std::int64_t utime = plan.start_utime; !motion.finished(); utime += control_period_us) {
+    motion.cycle(utime);
+    acquisition.take(rig.advance(control_period_s));
+    bus.drain();
+  }
+  bus.drain();
+  if (!motion.alarm().empty())
+    throw NegativeAnswer(fmt::format("run {}: motion stopped by an alarm: {}", plan.name, motion.alarm()));
+  if (recorder) recorder->close();
+  return evaluator.finish();
+}
+
+}  // namespace waverig::rig

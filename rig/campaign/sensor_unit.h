@@ -1,0 +1,15 @@
+// The sensor unit of a campaign: from the names in its settings to a drawn, simulated unit.
+#pragma once
+#include "rig/campaign/settings.h"
+#include "rig/frontend/simulated_unit.h"
+
+namespace waverig::rig {
+
+// Of the type chosen, at the campaign's place.
+UnitSettings unit_settings(const CampaignSettings& campaign);
+
+// The one unit that the campaign tests, drawn from its seed: as it is calibrated, and as it is measured with later.
+UnitParameters fresh_unit(const CampaignSettings& campaign);
+UnitParameters tested_unit(const CampaignSettings& campaign);
+
+}  // namespace waverig::rig

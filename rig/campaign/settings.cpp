@@ -1,0 +1,118 @@
+#include "rig/campaign/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lcmtypes/error.h"
+#include "motion/kinematics/frames.h"
+
+namespace waverig::rig {
+namespace {
+
+// 2026-01-01T00:00:00Z: virtual time begins somewhere; a laboratory's campaign has the time of its frames.
+constexpr std::int64_t kVirtualStart_utime = 1767225600LL * 1000000LL;
+
+SweepSettings read_sweep(TomlTable sweep) {
+  SweepSettings s;
+  const auto periods = sweep.numbers("periods_s", std::nullopt, {0.5, 60});
+  const auto heights = sweep.numbers("heights_cm", std::nullopt, {0.1, 2000});
+  for (const double period : periods)
+    for (const double height : heights) s.settings.push_back({period, height * kCentimetre});
+  s.settings_place = sweep.place_of("heights_cm");
+  s.repeats = static_cast<int>(sweep.integer("repeats", 3, {1, 10000}));
+  s.profile.steady_s = sweep.number("duration_s", 300, {1, 864000});
+  s.profile.ramp_periods = static_cast<int>(sweep.integer("ramp_periods", 2, {1, 100}));
+  s.profile.rest_before_s = sweep.number("rest_before_s", 20, {0, 3600});
+  s.profile.rest_after_s = sweep.number("rest_after_s", 2, {0, 3600});
+  s.profile.rate_modulation = sweep.number("rate_modulation", 0, {0, 0.5});
+  s.profile.modulation_cycles = static_cast<int>(sweep.integer("modulation_cycles", 0, {0, 1000}));
+  s.profile.rate_drift = sweep.number("rate_drift", 0, {-0.5, 0.5});
+  s.outside = sweep.choice("outside_envelope", "refuse", {"refuse", "skip"}) == "skip" ? OutsideEnvelope::kSkip
+                                                                                      : OutsideEnvelope::kRefuse;
+  return s;
+}
+
+Place read_place(TomlTable place) {
+  return {.latitude_rad = place.number("latitude_deg", 36.37, {-89.9, 89.9}) * kDegree,
+          .longitude_rad = place.number("longitude_deg", 127.36, {-180, 360}) * kDegree,
+          .height_m = place.number("height_m", 70, {-500, 9000})};
+}
+
+RotatingArmSettings read_arm(TomlTable rig, double gravity_mps2) {
+  RotatingArmSettings s;
+  s.gravity_mps2 = gravity_mps2;
+  s.azimuth_rad = rig.number("arm_azimuth_deg", 0, {-360, 360}) * kDegree;
+  s.arm_sag_rad = rig.number("arm_sag_deg", 0, {0, 10}) * kDegree;
+  TomlTable gondola = rig.table("gondola");
+  s.pendulum_length_m = gondola.number("pendulum_length_m", s.pendulum_length_m, {0, 10});
+  s.pendulum_damping = gondola.number("pendulum_damping", s.pendulum_damping, {0, 10});
+  s.bearing_damping = gondola.number("bearing_damping", s.bearing_damping, {0, 10});
+  s.forced_tilt_rad = gondola.number("forced_tilt_deg", 0, {0, 45}) * kDegree;
+  s.forced_tilt_phase_rad = gondola.number("forced_tilt_phase_deg", 0, {-360, 360}) * kDegree;
+  return s;
+}
+
+motion::EnvelopeSettings read_envelope(TomlTable rig) {
+  motion::EnvelopeSettings s;
+  s.min_radius_m = rig.number("min_radius_m", s.min_radius_m, {0.001, 100});
+  s.max_radius_m = rig.number("max_radius_m", s.max_radius_m, {s.min_radius_m, 100});
+  s.max_centripetal_mps2 = rig.number("max_centripetal_mps2", s.max_centripetal_mps2, {0, 1000});
+  TomlTable axis = rig.table("axis");
+  s.limits.rate_radps = axis.number("max_rate_radps", s.limits.rate_radps, {0.01, 1000});
+  s.limits.accel_radps2 = axis.number("max_accel_radps2", s.limits.accel_radps2, {0.01, 10000});
+  s.limits.jerk_radps3 = axis.number("max_jerk_radps3", s.limits.jerk_radps3, {0.01, 100000});
+  return s;
+}
+
+SensorChoice read_sensor(TomlTable sensor) {
+  SensorChoice s;
+  s.accelerometer = sensor.choice("accelerometer", s.accelerometer, {"MMA7331LC"});
+  s.gyroscope = sensor.choice("gyroscope", s.gyroscope, {"FXAS21000"});
+  s.gyroscope_range_degps = sensor.number("gyroscope_range_degps", s.gyroscope_range_degps, {200, 1600});
+  s.aged = sensor.boolean("aged", s.aged);
+  return s;
+}
+
+CalibrationRunSettings read_calibration(TomlTable calibration, bool& enabled) {
+  CalibrationRunSettings s;
+  enabled = calibration.boolean("enabled", true);
+  s.settle_s = calibration.number("settle_s", s.settle_s, {0, 600});
+  s.record_s = calibration.number("seconds_per_position", s.record_s, {2 * s.batch_s, 3600});
+  s.fixture_sigma_rad = calibration.number("fixture_sigma_deg", s.fixture_sigma_rad / kDegree, {0, 5}) * kDegree;
+  return s;
+}
+
+}  // namespace
+
+Campaign read_campaign(const std::filesystem::path& file, const std::uint64_t* seed_override) {
+  return read_campaign(TomlFile(file), seed_override);
+}
+
+Campaign read_campaign(TomlFile file, const std::uint64_t* seed_override) {
+  if (seed_override != nullptr) file.set("seed", static_cast<std::int64_t>(*seed_override));
+  CampaignSettings s;
+  TomlTable& root = file.root();
+  s.name = root.text("name", std::nullopt);
+  s.seed = static_cast<std::uint64_t>(root.integer("seed", 1, {0, 9.2e18}));
+  s.methods = root.texts("methods", std::vector<std::string>{"lee2014", "harmonic"});
+  for (const std::string& method : s.methods) {
+    const auto known = estimator::method_names();
+    if (std::find(known.begin(), known.end(), method) == known.end())
+      root.refuse("methods", fmt::format("names among \"{}\"", fmt::join(known, "\", \"")));
+  }
+  s.sweep = read_sweep(root.table("sweep"));
+  s.place = read_place(root.table("place"));
+  TomlTable rig = root.table("rig");
+  s.arm = read_arm(rig, gravity_mps2(s.place));
+  s.envelope = read_envelope(rig);
+  s.sensor = read_sensor(root.table("sensor"));
+  s.calibration = read_calibration(root.table("calibration"), s.calibrate);
+  s.axis.limits = s.envelope.limits;
+  s.start_utime = root.integer("start_utime", kVirtualStart_utime, {0, 9e15});
+  root.refuse_unknown_keys();
+  s.estimator.sensor.gravity_mps2 = gravity_mps2(s.place);
+  return {s, file.resolved()};
+}
+
+}  // namespace waverig::rig

@@ -1,0 +1,69 @@
+// A campaign: what shall be set, on which rig, with which sensor, told by which methods. SI here; in the TOML file
+// every key that has a unit carries it in its name.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "estimator/method.h"
+#include "motion/axis_controller.h"
+#include "motion/envelope.h"
+#include "motion/kinematics/earth.h"
+#include "motion/profile.h"
+#include "motion/simulated_drive.h"
+#include "rig/acquisition/calibration_run.h"
+#include "rig/mechanism/rotating_arm.h"
+#include "rig/settings/toml_reader.h"
+
+namespace waverig::rig {
+
+struct Setting {
+  double period_s = 0;
+  double height_m = 0;
+};
+
+enum class OutsideEnvelope { kRefuse, kSkip };   // what happens to settings that cannot be made or measured
+
+struct SweepSettings {
+  std::vector<Setting> settings;                 // by period, then height
+  std::string settings_place;                    // FILE:LINE of the heights, for complaints
+  int repeats = 1;
+  motion::ProfileSettings profile;               // of every run; the period is the setting's
+  OutsideEnvelope outside = OutsideEnvelope::kRefuse;
+};
+
+struct SensorChoice {
+  std::string accelerometer = "MMA7331LC";
+  std::string gyroscope = "FXAS21000";
+  double gyroscope_range_degps = 200;
+  bool aged = false;                             // since its calibration: HARDWARE drift added after it
+};
+
+struct CampaignSettings {
+  std::string name;
+  std::uint64_t seed = 1;
+  std::vector<std::string> methods;
+  SweepSettings sweep;
+  Place place;
+  RotatingArmSettings arm;
+  motion::EnvelopeSettings envelope;             // of the rig; the sensor's part is filled in from the sensor
+  SensorChoice sensor;
+  bool calibrate = true;                         // six positions at the start
+  CalibrationRunSettings calibration;
+  motion::AxisSettings axis;
+  motion::SimulatedDriveSettings drive;
+  estimator::MethodSettings estimator;
+  std::int64_t start_utime = 0;                  // of the first run, virtual time
+};
+
+struct Campaign {
+  CampaignSettings settings;
+  std::string resolved;                          // TOML with every value, defaults included
+};
+
+// Reads and checks a campaign. seed_override replaces the file's seed. Throws UserError.
+Campaign read_campaign(const std::filesystem::path& file, const std::uint64_t* seed_override = nullptr);
+Campaign read_campaign(TomlFile file, const std::uint64_t* seed_override = nullptr);
+
+}  // namespace waverig::rig

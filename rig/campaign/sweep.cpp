@@ -1,0 +1,127 @@
+#include "rig/campaign/sweep.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "estimator/evaluation/results_io.h"
+#include "estimator/evaluation/run_record.h"
+#include "motion/kinematics/random.h"
+#include "rig/campaign/progress.h"
+#include "rig/campaign/sensor_unit.h"
+
+namespace waverig::rig {
+namespace {
+
+// What the calibration says of itself, for the methods' uncertainty budget. A unit that has aged since is known to
+// have: the certificate's allowance for ageing is added.
+estimator::SensorKnowledge knowledge_of(const CampaignSettings& campaign, const estimator::SensorCalibration& calibration) {
+  estimator::SensorKnowledge known = campaign.estimator.sensor;
+  const Matrix3d M = calibration.accelerometer.sigma_M();
+  const auto rms = [](const auto& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); };
+  known.accel_bias_sigma_mps2 = rms(calibration.accelerometer.sigma_b_mps2());
+  known.accel_scale_sigma = rms(Vector3d(M.diagonal()));
+  known.accel_misalignment_sigma_rad =
+      std::sqrt((M.squaredNorm() - M.diagonal().squaredNorm()) / 6);
+  known.gyro_bias_sigma_radps = rms(calibration.gyroscope.offset_sigma_radps);
+  if (campaign.sensor.aged) {
+    const AgeingSettings age;
+    known.accel_bias_sigma_mps2 = std::hypot(known.accel_bias_sigma_mps2, age.accel_bias_mps2);
+    known.accel_scale_sigma = std::hypot(known.accel_scale_sigma, age.accel_scale);
+    known.accel_misalignment_sigma_rad = std::hypot(known.accel_misalignment_sigma_rad, age.accel_misalignment);
+    known.gyro_bias_sigma_radps = std::hypot(known.gyro_bias_sigma_radps, age.gyro_offset_radps);
+  }
+  return known;
+}
+
+// Calls work(i) for i in [0, count) from some threads; the first exception ends all and is rethrown.
+template <class Work>
+void in_parallel(int jobs, std::size_t count, Work work) {
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto worker = [&] {
+    for (std::size_t i; (i = next++) < count;) try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+        next = count;
+      }
+  };
+  std::vector<std::jthread> threads;
+  for (int j = 1; j < jobs; ++j) threads.emplace_back(worker);
+  worker();
+  threads.clear();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+CalibratedUnit calibrate(const CampaignSettings& campaign) {
+  CalibratedUnit result;
+  CampaignUnit& unit = result.unit;
+  unit.settings = unit_settings(campaign);
+  unit.tested = tested_unit(campaign);
+  unit.sensitivities = nominal_sensitivities(unit.settings);
+  unit.methods = campaign.estimator;
+  unit.calibrated = campaign.calibrate;
+  if (!campaign.calibrate) return result;
+
+  const UnitParameters fresh = fresh_unit(campaign);
+  CalibrationRunSettings settings = campaign.calibration;
+  settings.begin_utime = campaign.start_utime;
+  settings.sensor_id = campaign.sensor.accelerometer + " + " + campaign.sensor.gyroscope;
+  const double gravity = gravity_mps2(campaign.place);
+  const CalibrationRun run = run_six_positions(unit.settings, fresh, unit.sensitivities, gravity,
+                                               derived_seed(campaign.seed, "six positions"), settings);
+  unit.calibration = run.calibration;
+  unit.methods.sensor = knowledge_of(campaign, run.calibration);
+  result.report_json = calibration_report(
+      run, true_calibration(unit.settings, fresh, unit.sensitivities, run.calibration.temperature_degC));
+  return result;
+}
+
+evaluation::CampaignResults run_campaign(const Campaign& campaign, const CampaignUnit& unit,
+                                         const std::vector<RunPlan>& runs, const ResultsDirectory& directory,
+                                         const SweepOptions& options) {
+  std::vector<std::vector<evaluation::RunResult>> judged(runs.size());
+  {
+    Progress progress("runs", runs.size());
+    in_parallel(options.jobs, runs.size(), [&](std::size_t i) {
+      const auto log = directory.runs() / (runs[i].name + ".lcm");
+      judged[i] = std::filesystem::exists(log)   // a log under its own name is whole: done before a resume
+                      ? evaluation::judge(evaluation::load_run(log), judge_settings(unit))
+                      : run_embedded(campaign.settings, unit, runs[i], log);
+      progress.done(runs[i].name);
+    });
+  }
+  evaluation::CampaignResults results;
+  results.name = campaign.settings.name;
+  results.version = options.version;
+  results.command = options.command;
+  results.seed = campaign.settings.seed;
+  results.complete = true;
+  for (auto& of_run : judged)
+    for (auto& result : of_run) results.runs.push_back(std::move(result));
+  results.cells = evaluation::cells_of(results.runs);
+  return results;
+}
+
+std::string results_table(const evaluation::CampaignResults& results) {
+  std::string table = fmt::format("{:>8} {:>9}  {:<12} {:>6} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", "period s", "height cm",
+                                  "method", "waves", "mean cm", "error %", "std cm", "bound cm", "U(k=2)", "rmse cm");
+  for (const auto& cell : results.cells) {
+    const auto& s = cell.statistics;
+    table += fmt::format("{:8.1f} {:9.1f}  {:<12} {:6} {:9.2f} {:8.2f} {:8.2f} {:9.2f} {:8.2f} {:7.2f}\n", cell.period_s,
+                         cell.height_m / kCentimetre, cell.method, s.waves, s.mean_height_m / kCentimetre,
+                         s.error_rate_percent, s.std_m / kCentimetre, s.bound_std_m / kCentimetre,
+                         s.expanded_uncertainty_m / kCentimetre, s.rmse_m / kCentimetre);
+  }
+  return table;
+}
+
+}  // namespace waverig::rig

@@ -1,0 +1,111 @@
+// waverig sweep and waverig plan.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "estimator/evaluation/atomic_file.h"
+#include "estimator/evaluation/results_io.h"
+#include "lcmtypes/error.h"
+#include "rig/campaign/sweep.h"
+#include "rig/cli/commands.h"
+#include "rig/cli/draw.h"
+#include "rig/version.h"
+
+namespace waverig::cli {
+namespace {
+
+struct SweepArguments {
+  std::string campaign, out, shard;
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::optional<std::uint64_t> seed;
+  bool resume = false, replace = false;
+};
+
+rig::Shard parse_shard(const std::string& text) {
+  rig::Shard shard;
+  char rest = 0;
+  if (text.empty()) return shard;
+  if (std::sscanf(text.c_str(), "%d/%d%c", &shard.number, &shard.of, &rest) != 2 || shard.of < 1 || shard.number < 1 ||
+      shard.number > shard.of)
+    throw UserError(fmt::format("--shard {}: expected K/N with 1 <= K <= N, e.g. 2/8", text));
+  return shard;
+}
+
+rig::ResultsDirectory::Mode mode_of(const SweepArguments& arguments) {
+  using Mode = rig::ResultsDirectory::Mode;
+  return arguments.resume ? Mode::kResume : arguments.replace ? Mode::kReplace : Mode::kFresh;
+}
+
+int sweep(const SweepArguments& arguments) {
+  const rig::Campaign campaign = rig::read_campaign(arguments.campaign, arguments.seed ? &*arguments.seed : nullptr);
+  const rig::Shard shard = parse_shard(arguments.shard);
+  const rig::CampaignPlan plan = rig::plan_campaign(campaign.settings);
+  rig::refuse_impossible(campaign.settings, plan);
+
+  rig::ResultsDirectory directory(arguments.out, mode_of(arguments));
+  directory.claim(campaign.resolved);
+  const rig::CalibratedUnit calibrated = rig::calibrate(campaign.settings);
+  if (!calibrated.report_json.empty())
+    evaluation::write_atomically(directory.working() / "calibration.json", calibrated.report_json);
+
+  const rig::SweepOptions options{
+      .jobs = arguments.jobs,
+      .shard = shard,
+      .command = fmt::format("waverig sweep {} --seed {}{}", arguments.campaign, campaign.settings.seed,
+                             arguments.shard.empty() ? "" : " --shard " + arguments.shard),
+      .version = kVersion};
+  evaluation::CampaignResults results =
+      rig::run_campaign(campaign, calibrated.unit, rig::runs_of_shard(plan, shard), directory, options);
+  results.calibration_json = calibrated.report_json;
+  evaluation::write_results(directory.working(), results);
+  draw_campaign(results, directory.working(), campaign, calibrated.unit, arguments.jobs);
+  directory.finish();
+  fmt::print("{}\nResults: {}\n", rig::results_table(results), arguments.out);
+  return 0;
+}
+
+int plan(const std::string& file) {
+  const rig::Campaign campaign = rig::read_campaign(file);
+  const rig::CampaignPlan planned = rig::plan_campaign(campaign.settings);
+  fmt::print("{}", rig::described(campaign.settings, planned));
+  const bool refused = std::any_of(planned.settings.begin(), planned.settings.end(), [](const auto& s) { return s.refused; });
+  return refused && campaign.settings.sweep.outside == rig::OutsideEnvelope::kRefuse ? 1 : 0;
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<SweepArguments>();
+  CLI::App* command = app.add_subcommand("sweep", "Plan a campaign, run it, judge it and draw it");
+  command->add_option("campaign", arguments->campaign, "Campaign file (TOML)")->required();
+  command->add_option("--out", arguments->out, "Results directory, made anew")->required();
+  command->add_option("--jobs", arguments->jobs, "Runs at a time; the results do not depend on it")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Instead of the campaign's seed");
+  command->add_option("--shard", arguments->shard, "K/N: only the Kth of N parts, for many machines; then waverig merge");
+  auto* resume = command->add_flag("--resume", arguments->resume, "Go on with an interrupted campaign");
+  command->add_flag("--replace", arguments->replace, "Replace results that are there, once the new ones are whole")
+      ->excludes(resume);
+  command->footer(
+      "Examples:\n"
+      "  waverig sweep rig/default.toml --out results/table2 --jobs 2\n"
+      "  waverig sweep rig/default.toml --out results/table2 --resume\n"
+      "  waverig sweep big.toml --out results/part3 --shard 3/16");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return sweep(*arguments); }; });
+}
+
+void add_plan(CLI::App& app, Command& chosen) {
+  auto file = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("plan", "Say what a campaign would run, and what cannot work and why");
+  command->add_option("campaign", *file, "Campaign file (TOML)")->required();
+  command->footer("Exit status 1 where a setting is refused and the campaign does not skip such.\n"
+                  "Example:\n  waverig plan rig/default.toml");
+  command->callback([file, &chosen] { chosen = [file] { return plan(*file); }; });
+}
+
+}  // namespace waverig::cli

@@ -1,0 +1,31 @@
+#include "rig/nodes/estimator_node.h"
+
+#include <waverig/record_t.hpp>
+
+#include "estimator/messages.h"
+#include "lcmtypes/channels.h"
+#include "lcmtypes/phase.h"
+
+namespace waverig::rig {
+
+EstimatorNode::EstimatorNode(Bus& bus, std::string method, const estimator::MethodSettings& settings)
+    : bus_(bus),
+      name_(std::move(method)),
+      heave_channel_(channel::of_method(channel::kHeavePrefix, name_)),
+      wave_channel_(channel::of_method(channel::kWavePrefix, name_)),
+      sea_channel_(channel::of_method(channel::kSeaPrefix, name_)),
+      settings_(settings),
+      method_(estimator::make_method(name_, settings_)) {
+  bus_.subscribe<imu_t>(channel::kImu, [this](const imu_t& m) { method_->add(estimator::sample_of(m), *this); });
+  bus_.subscribe<record_t>(channel::kRecord, [this](const record_t& m) {
+    m.action == static_cast<std::int32_t>(RecordAction::kBegin) ? begin() : end();
+  });
+}
+
+void EstimatorNode::begin() { method_ = estimator::make_method(name_, settings_); }
+void EstimatorNode::end() { method_->finish(*this); }
+void EstimatorNode::heave(const estimator::HeaveSample& sample) { bus_.publish(heave_channel_, message_of(sample)); }
+void EstimatorNode::wave(const estimator::Wave& wave) { bus_.publish(wave_channel_, message_of(wave)); }
+void EstimatorNode::sea(const estimator::SeaState& sea) { bus_.publish(sea_channel_, message_of(sea)); }
+
+}  // namespace waverig::rig

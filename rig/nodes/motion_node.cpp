@@ -1,0 +1,99 @@
+#include "rig/nodes/motion_node.h"
+
+#include <algorithm>
+#include <cstring>
+#include <waverig/alarm_t.hpp>
+#include <waverig/axis_t.hpp>
+#include <waverig/record_t.hpp>
+#include <waverig/run_t.hpp>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/phase.h"
+
+namespace waverig::rig {
+namespace {
+
+constexpr std::int64_t kStatusPeriod_utime = 100000;   // between two axis_t where nothing changes
+
+}  // namespace
+
+MotionNode::MotionNode(Bus& bus, motion::Drive& drive, const motion::AxisSettings& axis,
+                       const motion::RotationProfile& profile, const OrderedRun& ordered)
+    : bus_(bus), controller_(drive, axis), profile_(profile), ordered_(ordered) {
+  controller_.enable();
+}
+
+void MotionNode::cycle(std::int64_t utime) {
+  using motion::AxisState;
+  const auto& status = controller_.cycle(utime);
+  if (status.state == AxisState::kReady && !started_) {
+    started_ = true;
+    const auto period_us = static_cast<std::int64_t>(controller_.settings().control_period_s * 1e6);
+    controller_.start(profile_, utime + period_us);
+    publish_record(utime + period_us, RecordAction::kBegin);
+  }
+  if (started_ && !finished_) announce_phase(utime);
+  publish_status(utime);
+  if (finished_) return;
+  const bool alarmed = status.alarm != motion::Alarm::kNone;
+  if (alarmed) publish_alarm(utime);
+  if (alarmed || status.runs_finished > 0) {
+    finished_ = true;
+    controller_.stop();
+    if (started_) publish_record(utime, RecordAction::kEnd);
+  }
+}
+
+void MotionNode::announce_phase(std::int64_t utime) {
+  const Phase phase = controller_.status().phase;
+  if (phase == phase_) return;
+  phase_ = phase;
+  run_t m{};
+  m.utime = utime;
+  m.seq = run_seq_++;
+  m.phase = static_cast<std::int32_t>(phase);
+  m.repeat = ordered_.repeat;
+  m.period_s = ordered_.period_s;
+  m.height_m = ordered_.height_m;
+  bus_.publish(channel::kRun, m);
+}
+
+void MotionNode::publish_status(std::int64_t utime) {
+  const auto& status = controller_.status();
+  if (status.state == published_state_ && utime < next_status_utime_) return;
+  published_state_ = status.state;
+  next_status_utime_ = utime + kStatusPeriod_utime;
+  axis_t m{};
+  m.utime = utime;
+  m.seq = axis_seq_++;
+  m.statusword = status.statusword;
+  m.alarm = static_cast<std::int32_t>(status.alarm);
+  m.setpoint_rad = status.setpoint_rad;
+  m.measured_rad = status.measured_rad;
+  m.following_error_rad = status.following_error_rad;
+  m.peak_following_error_rad = status.peak_following_error_rad;
+  m.torque_ratio = status.torque_ratio;
+  bus_.publish(channel::kAxis, m);
+}
+
+void MotionNode::publish_record(std::int64_t utime, RecordAction action) {
+  record_t m{};
+  m.utime = utime;
+  m.seq = record_seq_++;
+  m.action = static_cast<std::int32_t>(action);
+  bus_.publish(channel::kRecord, m);
+}
+
+void MotionNode::publish_alarm(std::int64_t utime) {
+  constexpr std::int32_t kMotionStops = 2;
+  alarm_t m{};
+  m.utime = utime;
+  m.seq = alarm_seq_++;
+  m.code = static_cast<std::int32_t>(controller_.status().alarm);
+  m.severity = kMotionStops;
+  const std::string& text = controller_.alarm_message();
+  std::memcpy(m.text, text.data(), std::min(text.size(), sizeof m.text));
+  bus_.publish(channel::kAlarm, m);
+}
+
+}  // namespace waverig::rig

@@ -1,0 +1,47 @@
+// MotionNode: the axis controller on the bus. It enables the drive, plays one run's profile, says which phase begins,
+// and marks begin and end of the record. One cycle() a control period; whoever calls it owns the time.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "lcmtypes/bus.h"
+#include "motion/axis_controller.h"
+
+namespace waverig::rig {
+
+struct OrderedRun {
+  double period_s = 0;
+  double height_m = 0;
+  int repeat = 0;
+};
+
+class MotionNode {
+ public:
+  // drive must outlive the node, which leaves it stopped on every way out.
+  MotionNode(Bus& bus, motion::Drive& drive, const motion::AxisSettings& axis, const motion::RotationProfile& profile,
+             const OrderedRun& ordered);
+
+  void cycle(std::int64_t utime);
+  bool finished() const { return finished_; }   // the record has ended: done, or alarmed
+
+  // The alarm that ended the run, with its numbers; empty where there was none.
+  const std::string& alarm() const { return controller_.alarm_message(); }
+  const motion::AxisStatus& status() const { return controller_.status(); }
+
+ private:
+  void announce_phase(std::int64_t utime);
+  void publish_status(std::int64_t utime);
+  void publish_record(std::int64_t utime, RecordAction action);
+  void publish_alarm(std::int64_t utime);
+
+  Bus& bus_;
+  motion::AxisController controller_;
+  motion::RotationProfile profile_;
+  OrderedRun ordered_;
+  Phase phase_ = Phase::kStopped;
+  motion::AxisState published_state_ = motion::AxisState::kIdle;
+  std::int64_t axis_seq_ = 0, run_seq_ = 0, record_seq_ = 0, alarm_seq_ = 0, next_status_utime_ = 0;
+  bool started_ = false, finished_ = false;
+};
+
+}  // namespace waverig::rig
