@@ -11,7 +11,7 @@ class AtomicFile {
  public:
   // Throws UserError where the folder cannot be written.
   explicit AtomicFile(std::filesystem::path path);
-  ~AtomicFile();   // without commit() nothing remains
+  ~AtomicFile();  // without commit() nothing remains
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 

@@ -11,12 +11,15 @@ double height_bound_m(const BoundSettings& settings) {
   if (samples < 5 || !std::isfinite(settings.noise_density_mps2_rthz)) return estimator::kUnknown;
   const double w = 2 * std::numbers::pi / settings.period_s;
   // White noise of one-sided density nd has variance nd^2 rate / 2 at each sample.
-  const double variance = settings.noise_density_mps2_rthz * settings.noise_density_mps2_rthz * settings.sample_rate_hz / 2;
+  const double variance =
+      settings.noise_density_mps2_rthz * settings.noise_density_mps2_rthz * settings.sample_rate_hz / 2;
   Eigen::Matrix4d fisher = Eigen::Matrix4d::Zero();
   for (long long i = 0; i < samples; ++i) {
     const double t = (static_cast<double>(i) + 0.5) / settings.sample_rate_hz;
-    // Drift scaled to the wave's length: the height's bound does not depend on it, the matrix' condition does.
-    const Eigen::Vector4d gradient(-w * w * std::cos(w * t), -w * w * std::sin(w * t), 1, t / settings.period_s - 0.5);
+    // Drift scaled to the wave's length: the height's bound does not depend on it, the matrix' condition
+    // does.
+    const Eigen::Vector4d gradient(-w * w * std::cos(w * t), -w * w * std::sin(w * t), 1,
+                                   t / settings.period_s - 0.5);
     fisher += gradient * gradient.transpose();
   }
   const Eigen::Matrix2d covariance = variance * fisher.inverse().topLeftCorner<2, 2>();

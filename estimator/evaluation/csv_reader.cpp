@@ -13,11 +13,12 @@ namespace waverig::evaluation {
 namespace {
 
 constexpr std::size_t kBlock = 1 << 16;
-constexpr std::size_t kLongestLine = 1 << 16;   // bytes; a longer one is no table of numbers
+constexpr std::size_t kLongestLine = 1 << 16;  // bytes; a longer one is no table of numbers
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
+    text.remove_suffix(1);
   return text;
 }
 
@@ -40,7 +41,8 @@ std::string shown(std::string_view text) {
 void CsvReader::Closer::operator()(gzFile_s* file) const { gzclose_r(file); }
 
 CsvReader::CsvReader(const std::filesystem::path& path) : path_(path), buffer_(kBlock) {
-  if (std::filesystem::is_directory(path)) throw UserError(fmt::format("{}: is a folder; expected a CSV file", name()));
+  if (std::filesystem::is_directory(path))
+    throw UserError(fmt::format("{}: is a folder; expected a CSV file", name()));
   file_.reset(gzopen(path.c_str(), "rb"));
   if (!file_) throw UserError(fmt::format("{}: cannot be read: {}", name(), std::strerror(errno)));
   gzbuffer(file_.get(), kBlock);
@@ -64,13 +66,14 @@ bool CsvReader::next() {
     const std::int64_t blank = line_;
     while (read_line(line))
       if (!trimmed(line).empty())
-        throw UserError(fmt::format("{}, line {}: the row is empty; expected {} cells", name(), blank, columns_.size()));
+        throw UserError(
+            fmt::format("{}, line {}: the row is empty; expected {} cells", name(), blank, columns_.size()));
     return false;
   }
   split(line);
   if (cells_.size() != columns_.size())
-    throw UserError(fmt::format("{}, line {}: {} cells in '{}'; expected {} ({})", name(), line_, cells_.size(), shown(line),
-                                columns_.size(), shown(header_)));
+    throw UserError(fmt::format("{}, line {}: {} cells in '{}'; expected {} ({})", name(), line_,
+                                cells_.size(), shown(line), columns_.size(), shown(header_)));
   return true;
 }
 
@@ -114,8 +117,8 @@ bool CsvReader::read_line(std::string_view& line) {
       break;
     }
     if (end_ - begin_ > kLongestLine)
-      throw UserError(fmt::format("{}, line {}: longer than {} bytes; expected a row of a CSV table", name(), line_ + 1,
-                                  kLongestLine));
+      throw UserError(fmt::format("{}, line {}: longer than {} bytes; expected a row of a CSV table", name(),
+                                  line_ + 1, kLongestLine));
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     end_ -= begin_;
     searched = end_;

@@ -1,5 +1,5 @@
-// Streaming reader of comma-separated numbers with a header, plain or gzip. Every complaint is a UserError that
-// names file, line, column, value and what was expected.
+// Streaming reader of comma-separated numbers with a header, plain or gzip. Every complaint is a UserError
+// that names file, line, column, value and what was expected.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -28,8 +28,8 @@ class CsvReader {
   std::string_view cell(int column) const { return cells_[static_cast<std::size_t>(column)]; }
   bool empty(int column) const { return cell(column).empty(); }
   std::int64_t integer(int column) const;
-  double number(int column) const;             // finite
-  double number_or_nan(int column) const;      // an empty cell or "nan" is NaN
+  double number(int column) const;         // finite
+  double number_or_nan(int column) const;  // an empty cell or "nan" is NaN
 
   std::int64_t line() const { return line_; }
   std::string name() const { return path_.string(); }
@@ -46,7 +46,7 @@ class CsvReader {
   std::filesystem::path path_;
   std::unique_ptr<gzFile_s, Closer> file_;
   std::vector<char> buffer_;
-  std::size_t begin_ = 0, end_ = 0;   // what of buffer_ is not consumed
+  std::size_t begin_ = 0, end_ = 0;  // what of buffer_ is not consumed
   std::int64_t line_ = 0;
   std::vector<std::string> columns_;
   std::vector<std::string_view> cells_;

@@ -10,10 +10,10 @@
 namespace waverig::evaluation {
 
 struct HeaveSeries {
-  std::vector<std::int64_t> utime;     // microseconds, growing
-  std::vector<double> heave_m;         // NaN where the file has an empty cell
-  std::vector<double> heave_sigma_m;   // NaN where unknown; as long as the others
-  std::vector<bool> moving;            // column "moving" where the file has one, else empty
+  std::vector<std::int64_t> utime;    // microseconds, growing
+  std::vector<double> heave_m;        // NaN where the file has an empty cell
+  std::vector<double> heave_sigma_m;  // NaN where unknown; as long as the others
+  std::vector<bool> moving;           // column "moving" where the file has one, else empty
 };
 
 // Plain or gzip. Throws UserError as SampleCsvReader does.
@@ -23,7 +23,7 @@ class HeaveCsvWriter {
  public:
   explicit HeaveCsvWriter(const std::filesystem::path& path);
   void write(const estimator::HeaveSample& sample);
-  void close();   // the file is there from now on
+  void close();  // the file is there from now on
 
  private:
   AtomicFile file_;

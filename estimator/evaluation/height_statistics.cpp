@@ -8,7 +8,7 @@
 namespace waverig::evaluation {
 namespace {
 
-constexpr double kCoverageFactor = 2;   // NIST TN 1297
+constexpr double kCoverageFactor = 2;  // NIST TN 1297
 
 }  // namespace
 
@@ -69,11 +69,13 @@ HeightStatistics HeightAccumulator::statistics(double set_height_m, double bound
   const bool noise_known = noise_variance_.count > 0;
   const double noise_variance = noise_known ? noise_variance_.mean() : 0.0;
   if (noise_known) contribute("noise", std::sqrt(noise_variance / n), 'B');
-  if (waves_ > 1) contribute("scatter", std::sqrt(std::max(0.0, s.std_m * s.std_m - noise_variance) / n), 'A');
+  if (waves_ > 1)
+    contribute("scatter", std::sqrt(std::max(0.0, s.std_m * s.std_m - noise_variance) / n), 'A');
   contribute("calibration", calibration_.mean(), 'B');
   contribute("tilt", tilt_.mean(), 'B');
   if (frequency_records_ > 0)
-    contribute("frequency", std::sqrt(frequency_variance_sum_) / static_cast<double>(frequency_records_), 'B');
+    contribute("frequency", std::sqrt(frequency_variance_sum_) / static_cast<double>(frequency_records_),
+               'B');
   double variance = 0;
   for (const Contribution& c : s.budget) variance += c.sigma_m * c.sigma_m;
   if (!s.budget.empty()) s.expanded_uncertainty_m = kCoverageFactor * std::sqrt(variance);

@@ -10,7 +10,8 @@ namespace waverig::evaluation {
 //
 // Budget of the mean height, after the GUM (k = 1 each, combined in quadrature, expanded with k = 2):
 //   noise        the waves' own noise sigma / sqrt(n): independent from wave to wave, type B
-//   scatter      what the observed standard deviation has beyond that noise, / sqrt(n), type A: the finite number of
+//   scatter      what the observed standard deviation has beyond that noise, / sqrt(n), type A: the finite
+//   number of
 //                waves. Noise is not counted twice; where it is unknown the whole scatter stands here.
 //   calibration  mean of the waves' sigma: common to all records of one calibration
 //   tilt         mean of the waves' sigma: common too, since the sensor's errors behind it are
@@ -23,7 +24,7 @@ class HeightAccumulator {
   HeightStatistics statistics(double set_height_m, double bound_std_m) const;
 
  private:
-  struct KnownMean {   // mean of the finite values only
+  struct KnownMean {  // mean of the finite values only
     std::int64_t count = 0;
     double sum = 0;
     void add(double value);
@@ -31,11 +32,11 @@ class HeightAccumulator {
   };
 
   std::int64_t waves_ = 0;
-  double mean_ = 0, squares_ = 0;   // Welford 1962
+  double mean_ = 0, squares_ = 0;  // Welford 1962
   double period_sum_ = 0;
   KnownMean true_height_, squared_error_, noise_variance_, calibration_, tilt_, record_frequency_;
   std::int64_t frequency_records_ = 0;
-  double frequency_variance_sum_ = 0;   // over records
+  double frequency_variance_sum_ = 0;  // over records
   std::int32_t flags_ = 0;
 };
 

@@ -40,7 +40,8 @@ std::vector<CellResult> cells_of(std::span<const RunResult> runs) {
   for (const RunResult& run : runs) sorted.push_back(&run);
   const auto setting = [](const RunResult& r) { return std::tie(r.period_s, r.height_m, r.method); };
   std::stable_sort(sorted.begin(), sorted.end(), [&](const RunResult* a, const RunResult* b) {
-    return std::tuple_cat(setting(*a), std::tie(a->repeat, a->run)) < std::tuple_cat(setting(*b), std::tie(b->repeat, b->run));
+    return std::tuple_cat(setting(*a), std::tie(a->repeat, a->run)) <
+           std::tuple_cat(setting(*b), std::tie(b->repeat, b->run));
   });
   std::vector<CellResult> cells;
   for (auto first = sorted.begin(); first != sorted.end();) {
@@ -64,7 +65,8 @@ std::string results_csv(std::span<const CellResult> cells) {
   fmt::memory_buffer out;
   const auto text = std::back_inserter(out);
   fmt::format_to(text,
-                 "period_s,height_cm,method,waves,mean_height_cm,error_rate_percent,std_cm,expanded_uncertainty_cm,rmse_cm,"
+                 "period_s,height_cm,method,waves,mean_height_cm,error_rate_percent,std_cm,expanded_"
+                 "uncertainty_cm,rmse_cm,"
                  "true_height_cm,mean_error_percent,bound_std_cm,heave_rmse_cm,mean_period_s,flags\n");
   for (const CellResult& cell : cells) {
     const HeightStatistics& s = cell.statistics;

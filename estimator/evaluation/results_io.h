@@ -1,7 +1,7 @@
 // Results of a campaign on disk: results.csv for people and spreadsheets, results.json with everything.
 //
-// Both are written whole or not at all, results.json last: a folder without it, or with "complete": false, is not
-// finished, and nothing here takes it for one.
+// Both are written whole or not at all, results.json last: a folder without it, or with "complete": false, is
+// not finished, and nothing here takes it for one.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -12,8 +12,9 @@
 
 namespace waverig::evaluation {
 
-// Rows of results.csv from the judged runs: the repeats of a setting and method pooled wave by wave, in the order
-// period, height, method. Runs are taken in the order of their repeat, so the result does not depend on who ran first.
+// Rows of results.csv from the judged runs: the repeats of a setting and method pooled wave by wave, in the
+// order period, height, method. Runs are taken in the order of their repeat, so the result does not depend on
+// who ran first.
 std::vector<CellResult> cells_of(std::span<const RunResult> runs);
 
 // Text of results.csv; an unknown value is an empty cell.
@@ -25,7 +26,8 @@ void invalidate_results(const std::filesystem::path& directory);
 // Writes results.csv and results.json into an existing directory.
 void write_results(const std::filesystem::path& directory, const CampaignResults& results);
 
-// Throws UserError where results.json is missing, broken (file, line, key, what was expected) or not complete.
+// Throws UserError where results.json is missing, broken (file, line, key, what was expected) or not
+// complete.
 CampaignResults read_results(const std::filesystem::path& directory);
 
 }  // namespace waverig::evaluation

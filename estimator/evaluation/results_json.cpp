@@ -30,10 +30,8 @@ class Writer {
   void operator()(const char* key, const std::string& value) { json_[key] = value; }
   void operator()(const char* key, const char& value) { json_[key] = std::string(1, value); }
   template <class Integer>
-    requires std::is_integral_v<Integer>
-  void operator()(const char* key, const Integer& value) {
-    json_[key] = value;
-  }
+  requires std::is_integral_v<Integer>
+  void operator()(const char* key, const Integer& value) { json_[key] = value; }
   template <class Item>
   void operator()(const char* key, const std::vector<Item>& items) {
     Json& array = json_[key] = Json::array();
@@ -75,7 +73,7 @@ class Reader {
     value = j.get<bool>();
   }
   template <class Integer>
-    requires std::is_integral_v<Integer>
+  requires std::is_integral_v<Integer>
   void operator()(const char* key, Integer& value) {
     const Json& j = at(key);
     if (!j.is_number_integer()) throw wrong(key, "a whole number");
@@ -99,7 +97,8 @@ class Reader {
     return *found;
   }
   UserError wrong(const char* key, const char* expected) const {
-    return UserError(fmt::format("{}: key '{}' is {}; expected {}", where_, key, json_.at(key).dump().substr(0, 40), expected));
+    return UserError(fmt::format("{}: key '{}' is {}; expected {}", where_, key,
+                                 json_.at(key).dump().substr(0, 40), expected));
   }
 
   const Json& json_;
@@ -201,15 +200,20 @@ void fields(auto& a, Is<CampaignResults> auto& r) {
 Json parsed(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file)
-    throw UserError(fmt::format("{}: cannot be read; expected the results of a finished campaign", path.string()));
+    throw UserError(
+        fmt::format("{}: cannot be read; expected the results of a finished campaign", path.string()));
   std::ostringstream text;
   text << file.rdbuf();
   try {
     return Json::parse(text.str());
   } catch (const Json::parse_error& error) {
     const std::string all = text.str();
-    const auto line = std::count(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, all.size())), '\n') + 1;
-    throw UserError(fmt::format("{}, line {}: not valid JSON; expected the results of a campaign", path.string(), line));
+    const auto line =
+        std::count(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, all.size())),
+                   '\n') +
+        1;
+    throw UserError(
+        fmt::format("{}, line {}: not valid JSON; expected the results of a campaign", path.string(), line));
   }
 }
 
@@ -225,10 +229,12 @@ void write_results(const std::filesystem::path& directory, const CampaignResults
   Writer writer(json);
   fields(writer, results);
   // The calibration's report is JSON itself: kept as such, not as a string within a string.
-  json["calibration"] = results.calibration_json.empty() ? Json(nullptr) : Json::parse(results.calibration_json);
+  json["calibration"] =
+      results.calibration_json.empty() ? Json(nullptr) : Json::parse(results.calibration_json);
   std::filesystem::remove(directory / "results.json");
   write_atomically(directory / "results.csv", results_csv(results.cells));
-  write_atomically(directory / "results.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_atomically(directory / "results.json",
+                   json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 CampaignResults read_results(const std::filesystem::path& directory) {

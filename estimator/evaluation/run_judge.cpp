@@ -30,13 +30,14 @@ TrueSea true_sea(const TruthSeries& truth, std::int64_t begin, std::int64_t end)
     rr += p.heave_rate_mps * p.heave_rate_mps;
   }
   if (n < 2) return {};
-  const double m0 = hh / n - h * h / (n * n), m2 = rr / n - r * r / (n * n);   // m2 in (m rad/s)^2
+  const double m0 = hh / n - h * h / (n * n), m2 = rr / n - r * r / (n * n);  // m2 in (m rad/s)^2
   return {4 * std::sqrt(m0), 2 * std::numbers::pi * std::sqrt(m0 / m2)};
 }
 
 }  // namespace
 
-RunJudge::RunJudge(std::string run, const JudgeSettings& settings) : run_(std::move(run)), settings_(settings) {}
+RunJudge::RunJudge(std::string run, const JudgeSettings& settings)
+    : run_(std::move(run)), settings_(settings) {}
 
 RunJudge::OfMethod& RunJudge::of(std::string_view method) {
   const auto at = methods_.find(method);
@@ -73,7 +74,9 @@ void RunJudge::add(std::string_view method, const estimator::HeaveSample& heave)
 }
 
 void RunJudge::add(std::string_view method, const estimator::Wave& wave) { of(method).waves.push_back(wave); }
-void RunJudge::add(std::string_view method, const estimator::SeaState& sea) { of(method).seas.push_back(sea); }
+void RunJudge::add(std::string_view method, const estimator::SeaState& sea) {
+  of(method).seas.push_back(sea);
+}
 
 bool RunJudge::steady(std::int64_t utime) const {
   return begun_ && utime >= steady_begin_ && (!ended_ || utime < steady_end_);
@@ -132,7 +135,8 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
     accumulator.add(result.waves.back());
   }
   accumulator.close_record();
-  const double bound_m = height_bound_m({period_s_, settings_.noise_density_mps2_rthz, settings_.sample_rate_hz});
+  const double bound_m =
+      height_bound_m({period_s_, settings_.noise_density_mps2_rthz, settings_.sample_rate_hz});
   result.statistics = accumulator.statistics(height_m_, bound_m);
 
   if (begun_) {

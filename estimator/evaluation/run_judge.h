@@ -1,5 +1,5 @@
-// RunJudge: the evaluator's memory of one run. It is fed the messages of the bus one by one, in any order between
-// channels, and tells at the end what each method's estimates are worth against the truth.
+// RunJudge: the evaluator's memory of one run. It is fed the messages of the bus one by one, in any order
+// between channels, and tells at the end what each method's estimates are worth against the truth.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -18,8 +18,9 @@ class truth_t;
 namespace waverig::evaluation {
 
 struct JudgeSettings {
-  double noise_density_mps2_rthz = estimator::kUnknown;   // one-sided, of the vertical acceleration; for the bound
-  double sample_rate_hz = 100;                            // of the sensor; for the bound
+  double noise_density_mps2_rthz =
+      estimator::kUnknown;      // one-sided, of the vertical acceleration; for the bound
+  double sample_rate_hz = 100;  // of the sensor; for the bound
 };
 
 struct RunRecord;
@@ -34,7 +35,8 @@ class RunJudge {
   void add(std::string_view method, const estimator::Wave& wave);
   void add(std::string_view method, const estimator::SeaState& sea);
 
-  // Waves that lie whole within the steady part are judged, all others only counted. One result a method, by name.
+  // Waves that lie whole within the steady part are judged, all others only counted. One result a method, by
+  // name.
   std::vector<RunResult> finish();
 
  private:
@@ -49,7 +51,7 @@ class RunJudge {
   struct OfMethod {
     std::vector<estimator::Wave> waves;
     std::vector<estimator::SeaState> seas;
-    std::vector<PendingHeave> pending;   // heave that the truth has not reached yet
+    std::vector<PendingHeave> pending;  // heave that the truth has not reached yet
     HeaveSums sums;
   };
 

@@ -50,9 +50,11 @@ class Loader {
     } else if (channel == channel::kCounts) {
       record_.raw.push_back(raw_of(decoded<counts_t>(event)));
     } else if (channel.starts_with(channel::kHeavePrefix)) {
-      record_.heave[method(channel, channel::kHeavePrefix)].push_back(estimator::heave_of(decoded<heave_t>(event)));
+      record_.heave[method(channel, channel::kHeavePrefix)].push_back(
+          estimator::heave_of(decoded<heave_t>(event)));
     } else if (channel.starts_with(channel::kWavePrefix)) {
-      record_.waves[method(channel, channel::kWavePrefix)].push_back(estimator::wave_of(decoded<wave_t>(event)));
+      record_.waves[method(channel, channel::kWavePrefix)].push_back(
+          estimator::wave_of(decoded<wave_t>(event)));
     } else if (channel.starts_with(channel::kSeaPrefix)) {
       record_.seas[method(channel, channel::kSeaPrefix)].push_back(estimator::sea_of(decoded<sea_t>(event)));
     }
@@ -67,8 +69,9 @@ class Loader {
   Message decoded(const LogEvent& event) const {
     Message message{};
     if (!event.decode(message))
-      throw UserError(fmt::format("{}: channel {}, time {}: {} bytes of another type; expected {}", log_.string(), event.channel,
-                                  event.utime, event.data.size(), Message::getTypeName()));
+      throw UserError(fmt::format("{}: channel {}, time {}: {} bytes of another type; expected {}",
+                                  log_.string(), event.channel, event.utime, event.data.size(),
+                                  Message::getTypeName()));
     return message;
   }
 

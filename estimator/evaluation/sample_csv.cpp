@@ -29,7 +29,8 @@ SampleCsvReader::SampleCsvReader(const std::filesystem::path& path) : csv_(path)
 
 bool SampleCsvReader::next(estimator::ImuSample& sample) {
   if (!csv_.next()) {
-    if (rows_ == 0) throw UserError(fmt::format("{}: no samples after the header; expected at least one row", csv_.name()));
+    if (rows_ == 0)
+      throw UserError(fmt::format("{}: no samples after the header; expected at least one row", csv_.name()));
     return false;
   }
   sample.utime = csv_.integer(0);
@@ -60,8 +61,8 @@ SampleCsvWriter::SampleCsvWriter(const std::filesystem::path& path, bool magneto
 void SampleCsvWriter::write(const estimator::ImuSample& s) {
   fmt::memory_buffer row;
   const auto out = std::back_inserter(row);
-  fmt::format_to(out, "{},{},{},{},{},{},{}", s.utime, s.f_B.x(), s.f_B.y(), s.f_B.z(), s.w_NB_B.x(), s.w_NB_B.y(),
-                 s.w_NB_B.z());
+  fmt::format_to(out, "{},{},{},{},{},{},{}", s.utime, s.f_B.x(), s.f_B.y(), s.f_B.z(), s.w_NB_B.x(),
+                 s.w_NB_B.y(), s.w_NB_B.z());
   if (magnetometer_) {
     if ((s.flags & flag::kNoMagnetometer) != 0)
       fmt::format_to(out, ",,,");

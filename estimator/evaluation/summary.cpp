@@ -30,7 +30,8 @@ Summary summary_of(const std::string& method, std::span<const estimator::Wave> w
   HeightAccumulator accumulator;
   for (const estimator::Wave& wave : waves) {
     if ((wave.flags & flag::kIncomplete) != 0) continue;
-    counted.push_back({wave.start_utime, wave.period_s, wave.height_m, wave.height_m / 2, -wave.height_m / 2});
+    counted.push_back(
+        {wave.start_utime, wave.period_s, wave.height_m, wave.height_m / 2, -wave.height_m / 2});
     accumulator.add({wave, estimator::kUnknown});
   }
   accumulator.close_record();

@@ -18,8 +18,8 @@ struct Summary {
          h110_m = estimator::kUnknown, hmax_m = estimator::kUnknown, mean_period_s = estimator::kUnknown,
          hm0_m = estimator::kUnknown, tm01_s = estimator::kUnknown, tm02_s = estimator::kUnknown,
          tp_s = estimator::kUnknown, expanded_uncertainty_m = estimator::kUnknown;
-  double heave_rms_error_m = estimator::kUnknown;   // against a truth, where one was given
-  double heave_rms_error_percent = estimator::kUnknown;   // of 4 standard deviations of that truth
+  double heave_rms_error_m = estimator::kUnknown;        // against a truth, where one was given
+  double heave_rms_error_percent = estimator::kUnknown;  // of 4 standard deviations of that truth
   double heave_gain = estimator::kUnknown, heave_lag_s = estimator::kUnknown;
   std::int32_t flags = 0;
 };
@@ -30,6 +30,6 @@ Summary summary_of(const std::string& method, const WaveStatistics& statistics);
 Summary summary_of(const std::string& method, std::span<const estimator::Wave> waves);
 
 std::string to_json(const Summary& summary);
-void write_summary(const std::filesystem::path& path, const Summary& summary);   // atomic
+void write_summary(const std::filesystem::path& path, const Summary& summary);  // atomic
 
 }  // namespace waverig::evaluation

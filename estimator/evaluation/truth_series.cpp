@@ -44,7 +44,8 @@ double TruthSeries::height_m(std::int64_t begin_utime, std::int64_t end_utime) c
   const Point first = at(begin_utime), last = at(end_utime);
   if (!std::isfinite(first.heave_m) || !std::isfinite(last.heave_m)) return estimator::kUnknown;
   double high = std::max(first.heave_m, last.heave_m), low = std::min(first.heave_m, last.heave_m);
-  // Where the rate changes sign between two samples an extreme lies between them; the rate is near straight there.
+  // Where the rate changes sign between two samples an extreme lies between them; the rate is near straight
+  // there.
   std::int64_t previous_utime = begin_utime;
   Point previous = first;
   const auto take = [&](std::int64_t utime, const Point& p) {

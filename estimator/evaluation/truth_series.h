@@ -15,11 +15,12 @@ class TruthSeries {
   struct Point {
     double heave_m = estimator::kUnknown, heave_rate_mps = estimator::kUnknown;
   };
-  // Cubic Hermite between the neighbours; NaN outside of the series. Cheap where times grow from call to call.
+  // Cubic Hermite between the neighbours; NaN outside of the series. Cheap where times grow from call to
+  // call.
   Point at(std::int64_t utime) const;
 
-  // Crest to trough of the true heave over [begin, end], extremes between the samples included; NaN where the series
-  // does not cover the span.
+  // Crest to trough of the true heave over [begin, end], extremes between the samples included; NaN where the
+  // series does not cover the span.
   double height_m(std::int64_t begin_utime, std::int64_t end_utime) const;
 
   bool empty() const { return samples_.empty(); }

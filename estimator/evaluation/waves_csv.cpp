@@ -25,7 +25,8 @@ void write_waves_csv(const std::filesystem::path& path, std::span<const estimato
   file.write("start_utime,period_s,height_cm,sigma_cm\n");
   for (const estimator::Wave& wave : waves) {
     const double sigma_m = combined_sigma_m(wave);
-    file.write(fmt::format("{},{:.4f},{:.4f},", wave.start_utime, wave.period_s, wave.height_m / kCentimetre));
+    file.write(
+        fmt::format("{},{:.4f},{:.4f},", wave.start_utime, wave.period_s, wave.height_m / kCentimetre));
     file.write(std::isnan(sigma_m) ? std::string("\n") : fmt::format("{:.4f}\n", sigma_m / kCentimetre));
   }
   file.commit();

@@ -7,7 +7,8 @@
 
 namespace waverig::evaluation {
 
-// Standard uncertainty (k = 1) of one wave's height: its known contributions in quadrature, NaN where none is known.
+// Standard uncertainty (k = 1) of one wave's height: its known contributions in quadrature, NaN where none is
+// known.
 double combined_sigma_m(const estimator::Wave& wave);
 
 void write_waves_csv(const std::filesystem::path& path, std::span<const estimator::Wave> waves);

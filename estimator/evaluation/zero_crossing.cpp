@@ -57,11 +57,11 @@ struct Crossing {
 };
 
 // h: heave above the zero line, without gaps, samples [begin, end).
-std::vector<Crossing> up_crossings(std::span<const std::int64_t> utime, std::span<const double> h, std::size_t begin,
-                                   std::size_t end, double dead_band_m) {
+std::vector<Crossing> up_crossings(std::span<const std::int64_t> utime, std::span<const double> h,
+                                   std::size_t begin, std::size_t end, double dead_band_m) {
   std::vector<Crossing> crossings;
   enum class Side { kUnknown, kBelow, kAbove } side = Side::kUnknown;
-  Crossing last{};   // newest change of sign, which counts only once the dead band is left
+  Crossing last{};  // newest change of sign, which counts only once the dead band is left
   for (std::size_t i = begin; i < end; ++i) {
     if (i > begin && h[i - 1] < 0 && h[i] >= 0) {
       const double fraction = h[i - 1] / (h[i - 1] - h[i]);
@@ -77,7 +77,8 @@ std::vector<Crossing> up_crossings(std::span<const std::int64_t> utime, std::spa
   return crossings;
 }
 
-// Height of the parabola's vertex through the sample at `top` and its neighbours; sign +1 for a crest, -1 for a trough.
+// Height of the parabola's vertex through the sample at `top` and its neighbours; sign +1 for a crest, -1 for
+// a trough.
 double extreme(std::span<const double> h, std::size_t top, double sign, bool interpolate) {
   if (!interpolate || top == 0 || top + 1 >= h.size()) return h[top];
   const double before = sign * h[top - 1], after = sign * h[top + 1], here = sign * h[top];
@@ -98,16 +99,21 @@ std::vector<CountedWave> count_waves(std::span<const std::int64_t> utime, std::s
 
   std::vector<CountedWave> waves;
   for (std::size_t begin = 0; begin < h.size();) {
-    std::size_t end = begin;   // the piece without a gap that begins here
-    while (end < h.size() && std::isfinite(h[end]) && (end == begin || seconds(utime[end - 1], utime[end]) <= gap_s)) ++end;
+    std::size_t end = begin;  // the piece without a gap that begins here
+    while (end < h.size() && std::isfinite(h[end]) &&
+           (end == begin || seconds(utime[end - 1], utime[end]) <= gap_s))
+      ++end;
     const auto crossings = up_crossings(utime, h, begin, end, settings.dead_band_m);
     for (std::size_t k = 0; k + 1 < crossings.size(); ++k) {
       const auto first = h.begin() + static_cast<std::ptrdiff_t>(crossings[k].sample);
       const auto last = h.begin() + static_cast<std::ptrdiff_t>(crossings[k + 1].sample);
       const auto [low, high] = std::minmax_element(first, last);
-      const double crest = extreme(h, static_cast<std::size_t>(high - h.begin()), +1, settings.interpolate_extremes);
-      const double trough = extreme(h, static_cast<std::size_t>(low - h.begin()), -1, settings.interpolate_extremes);
-      waves.push_back({crossings[k].utime, seconds(crossings[k].utime, crossings[k + 1].utime), crest - trough, crest, trough});
+      const double crest =
+          extreme(h, static_cast<std::size_t>(high - h.begin()), +1, settings.interpolate_extremes);
+      const double trough =
+          extreme(h, static_cast<std::size_t>(low - h.begin()), -1, settings.interpolate_extremes);
+      waves.push_back({crossings[k].utime, seconds(crossings[k].utime, crossings[k + 1].utime),
+                       crest - trough, crest, trough});
     }
     begin = std::max(end, begin + 1);
   }
@@ -120,7 +126,8 @@ namespace {
 template <class Value>
 double leading_mean(std::span<const CountedWave> sorted, double count, Value value) {
   double sum = 0, left = count;
-  for (std::size_t i = 0; i < sorted.size() && left > 0; ++i, left -= 1) sum += std::min(left, 1.0) * value(sorted[i]);
+  for (std::size_t i = 0; i < sorted.size() && left > 0; ++i, left -= 1)
+    sum += std::min(left, 1.0) * value(sorted[i]);
   return sum / count;
 }
 
@@ -144,7 +151,8 @@ WaveStatistics statistics_of(std::span<const CountedWave> waves) {
   s.mean_period_s = leading_mean(sorted, n, period);
   if (waves.size() > 1) {
     double squares = 0;
-    for (const CountedWave& w : waves) squares += (w.height_m - s.mean_height_m) * (w.height_m - s.mean_height_m);
+    for (const CountedWave& w : waves)
+      squares += (w.height_m - s.mean_height_m) * (w.height_m - s.mean_height_m);
     s.std_height_m = std::sqrt(squares / (n - 1));
   }
   return s;

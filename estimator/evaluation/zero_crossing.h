@@ -1,9 +1,9 @@
 // Zero-up-crossing waves of a heave series and their statistics.
 //
-// A wave reaches from one up-crossing of the zero line to the next; its height is highest minus lowest heave between.
-// A sample on the zero line counts as above it. H1/n and T1/n are means over exactly the n-th part of the waves: where
-// that is no whole number, the last wave counts with the fraction that is left.
-// Held against twelve half hours of a Datawell Waverider this reproduces the buoy's own Hmax, H1/3, H1/10 and mean
+// A wave reaches from one up-crossing of the zero line to the next; its height is highest minus lowest heave
+// between. A sample on the zero line counts as above it. H1/n and T1/n are means over exactly the n-th part
+// of the waves: where that is no whole number, the last wave counts with the fraction that is left. Held
+// against twelve half hours of a Datawell Waverider this reproduces the buoy's own Hmax, H1/3, H1/10 and mean
 // height to the last digit, given the buoy's zero line: the mean of the half hour before.
 #pragma once
 #include <cstdint>
@@ -15,20 +15,21 @@
 namespace waverig::evaluation {
 
 struct ZeroCrossingSettings {
-  bool remove_mean = true;            // the zero line is the series' mean …
-  bool remove_trend = false;          // … or its straight line of least squares
-  double level_m = 0;                 // … and this much above it
-  double dead_band_m = 0;             // a crossing counts once the heave has left +- this band on the other side
-  double longest_gap_s = 0;           // no wave reaches over a longer gap; 0: three times the median interval
-  bool interpolate_extremes = false;  // crest and trough by a parabola through three samples; else the samples' own
+  bool remove_mean = true;    // the zero line is the series' mean …
+  bool remove_trend = false;  // … or its straight line of least squares
+  double level_m = 0;         // … and this much above it
+  double dead_band_m = 0;     // a crossing counts once the heave has left +- this band on the other side
+  double longest_gap_s = 0;   // no wave reaches over a longer gap; 0: three times the median interval
+  bool interpolate_extremes =
+      false;  // crest and trough by a parabola through three samples; else the samples' own
 };
 
 struct CountedWave {
-  std::int64_t start_utime = 0;   // interpolated crossing
+  std::int64_t start_utime = 0;  // interpolated crossing
   double period_s = 0;
-  double height_m = 0;            // crest to trough
-  double crest_m = 0;             // above the zero line
-  double trough_m = 0;            // below it, negative
+  double height_m = 0;  // crest to trough
+  double crest_m = 0;   // above the zero line
+  double trough_m = 0;  // below it, negative
 };
 
 // utime in microseconds, growing; heave in metres, up; NaN is a gap. Both of one length.
@@ -39,8 +40,8 @@ struct WaveStatistics {
   std::int64_t waves = 0;
   double mean_height_m = estimator::kUnknown, std_height_m = estimator::kUnknown, h13_m = estimator::kUnknown,
          h110_m = estimator::kUnknown, hmax_m = estimator::kUnknown;
-  double mean_period_s = estimator::kUnknown;   // Tz, counted
-  double t13_s = estimator::kUnknown;           // mean period of the highest third
+  double mean_period_s = estimator::kUnknown;  // Tz, counted
+  double t13_s = estimator::kUnknown;          // mean period of the highest third
 };
 
 WaveStatistics statistics_of(std::span<const CountedWave> waves);

@@ -1,0 +1,199 @@
+#include "estimator/evaluation/results_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "estimator/evaluation/atomic_file.h"
+#include "estimator/evaluation/height_statistics.h"
+#include "estimator/evaluation/summary.h"
+#include "estimator/evaluation/waves_csv.h"
+#include "lcmtypes/error.h"
+#include "lcmtypes/flags.h"
+#include "tests/evaluation/scratch.h"
+
+namespace waverig::evaluation {
+namespace {
+
+RunResult run(double period_s, double height_m, const std::string& method, int repeat, double first_m) {
+  RunResult r;
+  r.run = "run" + std::to_string(repeat);
+  r.method = method;
+  r.repeat = repeat;
+  r.period_s = period_s;
+  r.height_m = height_m;
+  HeightAccumulator a;
+  for (int i = 0; i < 5; ++i) {
+    JudgedWave w;
+    w.wave.start_utime = i * 6'000'000;
+    w.wave.period_s = period_s;
+    w.wave.height_m = first_m + 0.001 * i;
+    w.wave.noise_sigma_m = 0.001;
+    w.true_height_m = height_m;
+    a.add(w);
+    r.waves.push_back(w);
+  }
+  a.close_record();
+  r.statistics = a.statistics(height_m, 0.0026);
+  r.heave_rmse_m = 0.002;
+  r.seas.push_back({.hm0_m = 1.5});
+  return r;
+}
+
+CampaignResults campaign() {
+  CampaignResults c;
+  c.name = "table 2";
+  c.version = "0.1.0";
+  c.command = "waverig sweep";
+  c.seed = 18446744073709551615u;
+  c.complete = true;
+  c.settings_toml = "[a]\nb = 1\n";
+  c.calibration_json = R"({"bias":[1,2,3]})";
+  c.runs = {run(12, 0.6, "harmonic", 1, 0.601), run(6, 0.6, "lee2014", 0, 0.62),
+            run(6, 0.6, "harmonic", 1, 0.599), run(6, 0.6, "harmonic", 0, 0.598)};
+  c.cells = cells_of(c.runs);
+  return c;
+}
+
+TEST(Results, CellsPoolTheWavesOfTheRepeatsInOrder) {
+  const auto cells = campaign().cells;
+  ASSERT_EQ(cells.size(), 3u);
+  EXPECT_EQ(cells[0].method, "harmonic");
+  EXPECT_EQ(cells[0].statistics.waves, 10);
+  EXPECT_NEAR(cells[0].statistics.mean_height_m, 0.6005, 1e-12);
+  EXPECT_EQ(cells[1].method, "lee2014");
+  EXPECT_EQ(cells[2].period_s, 12);
+  EXPECT_NEAR(cells[0].heave_rmse_m, 0.002, 1e-12);
+}
+
+TEST(Results, DoNotDependOnTheOrderInWhichRunsFinish) {
+  CampaignResults c = campaign();
+  const std::string text = results_csv(cells_of(c.runs));
+  std::reverse(c.runs.begin(), c.runs.end());
+  EXPECT_EQ(results_csv(cells_of(c.runs)), text);
+}
+
+TEST(Results, CsvBeginsWithTheAgreedColumns) {
+  const std::string text = results_csv(campaign().cells);
+  EXPECT_TRUE(
+      text.starts_with("period_s,height_cm,method,waves,mean_height_cm,error_rate_percent,std_cm,"
+                       "expanded_uncertainty_cm,rmse_cm,"))
+      << text;
+  EXPECT_NE(text.find("\n6,60,harmonic,10,60.0500,0.0833,"), std::string::npos) << text;
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+}
+
+TEST(Results, ComeBackFromTheDiskWhole) {
+  const Scratch scratch;
+  const CampaignResults c = campaign();
+  write_results(scratch.path(), c);
+  const CampaignResults back = read_results(scratch.path());
+  EXPECT_EQ(back.seed, c.seed);
+  EXPECT_EQ(back.settings_toml, c.settings_toml);
+  EXPECT_EQ(nlohmann::json::parse(back.calibration_json), nlohmann::json::parse(c.calibration_json));
+  ASSERT_EQ(back.runs.size(), 4u);
+  EXPECT_EQ(back.runs[0].waves.size(), 5u);
+  EXPECT_EQ(back.runs[0].waves[3].wave.height_m, c.runs[0].waves[3].wave.height_m);
+  EXPECT_TRUE(std::isnan(back.runs[0].waves[3].wave.tilt_sigma_m));
+  EXPECT_EQ(back.runs[0].seas.at(0).hm0_m, 1.5);
+  ASSERT_EQ(back.cells.size(), 3u);
+  EXPECT_EQ(back.cells[0].statistics.budget.size(), c.cells[0].statistics.budget.size());
+  EXPECT_EQ(back.cells[0].statistics.budget[0].name, "noise");
+  EXPECT_EQ(results_csv(back.cells), Scratch::read(scratch.path() / "results.csv"));
+}
+
+TEST(Results, LeaveNoTemporaryFiles) {
+  const Scratch scratch;
+  write_results(scratch.path(), campaign());
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(scratch.path())) {
+    ++files;
+    EXPECT_TRUE(entry.path().filename() == "results.csv" || entry.path().filename() == "results.json")
+        << entry.path();
+  }
+  EXPECT_EQ(files, 2);
+}
+
+TEST(Results, APartialFolderIsNotTakenForAFinishedOne) {
+  const Scratch scratch;
+  EXPECT_THROW(read_results(scratch.path()), UserError);
+  CampaignResults c = campaign();
+  write_results(scratch.path(), c);
+  c.complete = false;
+  write_results(scratch.path(), c);
+  EXPECT_THROW(read_results(scratch.path()), UserError);
+  c.complete = true;
+  write_results(scratch.path(), c);
+  EXPECT_NO_THROW(read_results(scratch.path()));
+  invalidate_results(scratch.path());
+  EXPECT_THROW(read_results(scratch.path()), UserError);
+}
+
+TEST(Results, NameTheKeyThatIsWrong) {
+  const Scratch scratch;
+  write_results(scratch.path(), campaign());
+  const auto good = nlohmann::ordered_json::parse(Scratch::read(scratch.path() / "results.json"));
+  const auto complaint = [&](const nlohmann::ordered_json& json) -> std::string {
+    scratch.write("results.json", json.dump());
+    try {
+      read_results(scratch.path());
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "no complaint";
+  };
+  auto bad = good;
+  bad["runs"][1]["std_m"] = "wide";
+  EXPECT_NE(complaint(bad).find("results.json, runs[1]: key 'std_m' is \"wide\"; expected a number"),
+            std::string::npos)
+      << complaint(bad);
+  bad = good;
+  bad["cells"][0].erase("method");
+  EXPECT_NE(complaint(bad).find("cells[0]: key 'method' is missing"), std::string::npos) << complaint(bad);
+  bad = good;
+  bad["runs"] = 7;
+  EXPECT_NE(complaint(bad).find("expected an array"), std::string::npos) << complaint(bad);
+  scratch.write("results.json", "{\n\"a\": [1,\n");
+  EXPECT_THROW(read_results(scratch.path()), UserError);
+  scratch.write("results.json", "[]");
+  EXPECT_THROW(read_results(scratch.path()), UserError);
+}
+
+TEST(AtomicFile, ShowsNothingBeforeTheCommitAndKeepsTheOldFileOnFailure) {
+  const Scratch scratch;
+  const auto path = scratch.write("file", "old");
+  {
+    AtomicFile file(path);
+    file.write("half of the new");
+    EXPECT_EQ(Scratch::read(path), "old");
+  }
+  EXPECT_EQ(Scratch::read(path), "old");
+  write_atomically(path, "new");
+  EXPECT_EQ(Scratch::read(path), "new");
+  EXPECT_THROW(write_atomically(scratch.path() / "no" / "such" / "folder", "x"), UserError);
+}
+
+TEST(Summary, HoldsTheAgreedKeysAndLeavesOutWhatIsUnknown) {
+  std::vector<estimator::Wave> waves(4);
+  for (std::size_t i = 0; i < waves.size(); ++i) {
+    waves[i].period_s = 6;
+    waves[i].height_m = 0.6 + 0.01 * static_cast<double>(i);
+    waves[i].noise_sigma_m = 0.02;
+    waves[i].flags = flag::kSaturation;
+  }
+  waves.push_back(waves[0]);
+  waves.back().flags = flag::kIncomplete;
+  const auto json = nlohmann::json::parse(to_json(summary_of("harmonic", waves)));
+  EXPECT_EQ(json.at("method"), "harmonic");
+  EXPECT_EQ(json.at("waves"), 4);
+  EXPECT_NEAR(json.at("mean_height_m").get<double>(), 0.615, 1e-12);
+  EXPECT_NEAR(json.at("hmax_m").get<double>(), 0.63, 1e-12);
+  EXPECT_NEAR(json.at("mean_period_s").get<double>(), 6, 1e-12);
+  EXPECT_NEAR(json.at("expanded_uncertainty_m").get<double>(), 0.02, 1e-12);
+  EXPECT_FALSE(json.contains("hm0_m"));
+  EXPECT_EQ(json.at("flags"), nlohmann::json::array({"saturation"}));
+}
+
+}  // namespace
+}  // namespace waverig::evaluation

@@ -1,0 +1,192 @@
+#include "estimator/evaluation/run_judge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <waverig/run_t.hpp>
+#include <waverig/truth_t.hpp>
+
+#include "estimator/evaluation/bound.h"
+#include "estimator/evaluation/run_record.h"
+#include "lcmtypes/flags.h"
+#include "lcmtypes/phase.h"
+
+namespace waverig::evaluation {
+namespace {
+
+constexpr double kPeriod = 6, kHeight = 0.6, kOmega = 2 * std::numbers::pi / kPeriod;
+constexpr std::int64_t kSecond = 1'000'000;
+
+run_t phase(Phase p, std::int64_t utime) {
+  run_t m{};
+  m.utime = utime;
+  m.phase = static_cast<std::int32_t>(p);
+  m.period_s = kPeriod;
+  m.height_m = kHeight;
+  m.repeat = 2;
+  return m;
+}
+
+double true_heave(std::int64_t utime) { return 0.29 * std::cos(kOmega * static_cast<double>(utime) * 1e-6); }
+
+truth_t truth(std::int64_t utime) {
+  truth_t m{};
+  m.utime = utime;
+  m.heave_m = true_heave(utime);
+  m.heave_rate_mps = -0.29 * kOmega * std::sin(kOmega * static_cast<double>(utime) * 1e-6);
+  return m;
+}
+
+estimator::Wave wave_at(std::int64_t utime, double height_m) {
+  estimator::Wave w;
+  w.start_utime = utime;
+  w.period_s = kPeriod;
+  w.height_m = height_m;
+  return w;
+}
+
+// 12 s of ramp, 48 s steady, 12 s of ramp; truth at 50 Hz.
+template <class EachTick>
+void play(RunJudge& judge, EachTick each_tick) {
+  judge.add(phase(Phase::kRampIn, 0));
+  for (std::int64_t t = 0; t <= 72 * kSecond; t += 20'000) {
+    if (t == 12 * kSecond) judge.add(phase(Phase::kSteady, t));
+    if (t == 60 * kSecond) judge.add(phase(Phase::kRampOut, t));
+    judge.add(truth(t));
+    each_tick(t);
+  }
+}
+
+TEST(RunJudge, JudgesOnlyWholeWavesOfTheSteadyPart) {
+  RunJudge judge("run", {});
+  play(judge, [&](std::int64_t t) {
+    if (t % (6 * kSecond) == 0) judge.add("m", wave_at(t, 0.59));
+  });
+  const auto results = judge.finish();
+  ASSERT_EQ(results.size(), 1u);
+  const RunResult& r = results[0];
+  EXPECT_EQ(r.statistics.waves, 8);  // 12, 18, … 54 s
+  EXPECT_EQ(r.excluded_waves, 13 - 8);
+  EXPECT_EQ(r.repeat, 2);
+  EXPECT_EQ(r.period_s, kPeriod);
+  EXPECT_NEAR(r.statistics.mean_true_height_m, 0.58, 1e-8);
+  EXPECT_NEAR(r.statistics.rmse_m, 0.01, 1e-8);
+  EXPECT_NEAR(r.statistics.error_rate_percent, 100 * 0.01 / 0.6, 1e-9);
+  EXPECT_NEAR(r.true_hm0_m, 4 * 0.29 / std::sqrt(2), 1e-3);
+  EXPECT_NEAR(r.true_tm02_s, kPeriod, 1e-3);
+}
+
+TEST(RunJudge, LeavesOutWavesCutByTheRecordsEdge) {
+  RunJudge judge("run", {});
+  estimator::Wave cut = wave_at(18 * kSecond, 0.3);
+  cut.flags = flag::kIncomplete;
+  judge.add("m", cut);
+  play(judge, [](std::int64_t) {});
+  EXPECT_EQ(judge.finish().at(0).excluded_waves, 1);
+}
+
+TEST(RunJudge, FindsGainLagAndErrorOfTheHeave) {
+  RunJudge judge("run", {});
+  const std::int64_t lag = 200'000;
+  play(judge, [&](std::int64_t t) {
+    estimator::HeaveSample h;
+    h.utime = t + 7'000;  // between the samples of the truth
+    h.heave_m = 5 + 1.1 * true_heave(h.utime - lag);
+    judge.add("late", h);
+    h.heave_m = 1 + true_heave(h.utime);
+    judge.add("true", h);
+  });
+  const auto results = judge.finish();
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0].method, "late");
+  EXPECT_NEAR(results[0].heave_gain, 1.1, 1e-6);
+  EXPECT_NEAR(results[0].heave_lag_s, 0.2, 1e-6);
+  EXPECT_NEAR(results[1].heave_rmse_m, 0, 1e-7);
+  EXPECT_NEAR(results[1].heave_gain, 1, 1e-6);
+  EXPECT_NEAR(results[1].heave_lag_s, 0, 1e-6);
+}
+
+TEST(RunJudge, DoesNotMindInWhichOrderTheChannelsCome) {
+  const auto result = [](bool late) {
+    RunJudge judge("run", {});
+    std::vector<estimator::HeaveSample> held;
+    play(judge, [&](std::int64_t t) {
+      estimator::HeaveSample h;
+      h.utime = t;
+      h.heave_m = 0.9 * true_heave(t - 50'000);
+      if (late)
+        held.push_back(h);
+      else
+        judge.add("m", h);
+    });
+    for (const auto& h : held) judge.add("m", h);
+    return judge.finish().at(0).heave_rmse_m;
+  };
+  EXPECT_GT(result(false), 0.01);
+  EXPECT_NEAR(result(true), result(false), 1e-12);
+}
+
+TEST(RunJudge, StatesTheBoundOfTheOrderedPeriod) {
+  RunJudge judge("run", {.noise_density_mps2_rthz = 3e-3, .sample_rate_hz = 100});
+  play(judge, [&](std::int64_t t) {
+    if (t == 18 * kSecond) judge.add("m", wave_at(t, 0.58));
+  });
+  EXPECT_NEAR(judge.finish().at(0).statistics.bound_std_m, dense_height_bound_m(kPeriod, 3e-3), 1e-9);
+}
+
+TEST(RunJudge, WithoutTruthOrSteadyPartJudgesNothing) {
+  RunJudge judge("run", {});
+  judge.add("m", wave_at(0, 1));
+  const auto results = judge.finish();
+  EXPECT_EQ(results.at(0).statistics.waves, 0);
+  EXPECT_EQ(results.at(0).excluded_waves, 1);
+}
+
+TEST(RunJudge, JudgesARecordLikeTheMessagesThemselves) {
+  RunJudge live("r", {});
+  RunRecord record;
+  record.run = "r";
+  record.period_s = kPeriod;
+  record.height_m = kHeight;
+  record.repeat = 2;
+  record.steady_begin_utime = 12 * kSecond;
+  record.steady_end_utime = 60 * kSecond;
+  play(live, [&](std::int64_t t) {
+    const truth_t m = truth(t);
+    TruthSample sample;
+    sample.utime = m.utime;
+    sample.heave_m = m.heave_m;
+    sample.heave_rate_mps = m.heave_rate_mps;
+    record.truth.push_back(sample);
+    estimator::HeaveSample h;
+    h.utime = t;
+    h.heave_m = 0.95 * true_heave(t - 30'000);
+    live.add("m", h);
+    record.heave["m"].push_back(h);
+    if (t % (6 * kSecond) == 0) {
+      live.add("m", wave_at(t, 0.57));
+      record.waves["m"].push_back(wave_at(t, 0.57));
+    }
+  });
+  const RunResult a = live.finish().at(0), b = judge(record, {}).at(0);
+  EXPECT_EQ(a.statistics.waves, b.statistics.waves);
+  EXPECT_EQ(a.statistics.rmse_m, b.statistics.rmse_m);
+  EXPECT_EQ(a.heave_rmse_m, b.heave_rmse_m);
+  EXPECT_EQ(a.excluded_waves, b.excluded_waves);
+}
+
+TEST(TruthSeries, FindsAnExtremeBetweenItsSamples) {
+  TruthSeries series;
+  for (int i = 0; i <= 40; ++i) {  // 4 Hz only
+    const double t = 0.25 * i + 0.1;
+    series.add(std::llround(t * 1e6), std::sin(kOmega * t), kOmega * std::cos(kOmega * t));
+  }
+  EXPECT_NEAR(series.height_m(1 * kSecond, 7 * kSecond), 2, 5e-5);
+  EXPECT_TRUE(std::isnan(series.height_m(6 * kSecond, 12 * kSecond)));
+  EXPECT_NEAR(series.at(1'234'567).heave_m, std::sin(kOmega * 1.234567), 2e-5);
+  EXPECT_TRUE(std::isnan(series.at(0).heave_m));
+}
+
+}  // namespace
+}  // namespace waverig::evaluation
