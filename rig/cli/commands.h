@@ -26,4 +26,7 @@ void add_bench(CLI::App& app, Command& chosen);
 void add_analyse(CLI::App& app, Command& chosen);
 void add_node(CLI::App& app, Command& chosen);
 
+inline constexpr void (*kCommands[])(CLI::App&, Command&) = {
+    add_sweep, add_plan};
+
 }  // namespace waverig::cli
