@@ -1,0 +1,81 @@
+#include "estimator/sample_guard.h"
+
+#include <cmath>
+
+#include "lcmtypes/flags.h"
+
+namespace waverig::estimator {
+namespace {
+
+constexpr int kSettledChanges = 20;   // changes seen before a spike can be told from the motion
+constexpr int kStep = 3;              // so many jumps in a row are a step, not a spike
+constexpr double kForget = 0.02;      // of the usual change, per sample
+
+}  // namespace
+
+bool SampleGuard::in_range(const ImuSample& s) const {
+  return s.f_B.allFinite() && s.w_NB_B.allFinite() &&
+         s.f_B.cwiseAbs().maxCoeff() <= settings_.accel_plausible_mps2 &&
+         s.w_NB_B.cwiseAbs().maxCoeff() <= settings_.gyro_plausible_radps;
+}
+
+bool SampleGuard::flat(const ImuSample& s) {
+  if (s.f_B != flat_f_B_) {
+    flat_f_B_ = s.f_B;
+    flat_since_ = s.utime;
+    return false;
+  }
+  return settings_.flat_line_s > 0 &&
+         static_cast<double>(s.utime - flat_since_) * kMicrosecond >= settings_.flat_line_s;
+}
+
+bool SampleGuard::spike(const ImuSample& s) {
+  const double change = (s.f_B - last_f_B_).cwiseAbs().maxCoeff();
+  const double limit = std::max(settings_.spike_floor_mps2, settings_.spike_ratio * usual_change_mps2_);
+  if (settings_.spike_ratio > 0 && changes_ >= kSettledChanges && change > limit && ++jumps_ < kStep) return true;
+  if (jumps_ < kStep) {   // the change that ends a step says nothing of the usual one
+    usual_change_mps2_ += (changes_ < kSettledChanges ? 1.0 / (changes_ + 1) : kForget) * (change - usual_change_mps2_);
+    if (changes_ < kSettledChanges) ++changes_;
+  }
+  jumps_ = 0;
+  return false;
+}
+
+void SampleGuard::learn_interval(double dt_s) {
+  // The mean of the first intervals, then a slow follower that gaps hardly move.
+  ++intervals_;
+  if (interval_s_ > 0 && dt_s > settings_.gap_ratio * interval_s_) return;
+  interval_s_ += (dt_s - interval_s_) / std::min(intervals_, 100);
+}
+
+GuardVerdict SampleGuard::check(const ImuSample& s) {
+  GuardVerdict verdict{.usable = false, .flags = s.flags, .dt_s = 0};
+  if (!in_range(s) || (started_ && s.utime <= last_utime_)) {
+    verdict.flags |= flag::kRange;
+    return verdict;
+  }
+  if (flat(s)) {
+    verdict.flags |= flag::kFlatLine;
+    return verdict;
+  }
+  const double dt_s = started_ ? static_cast<double>(s.utime - last_utime_) * kMicrosecond : 0.0;
+  const bool gap = interval_s_ > 0 && dt_s > settings_.gap_ratio * interval_s_;
+  if (started_ && !gap && spike(s)) {
+    verdict.flags |= flag::kSpike;
+    return verdict;
+  }
+  if ((settings_.accel_limit_mps2 > 0 && s.f_B.cwiseAbs().maxCoeff() >= settings_.accel_limit_mps2) ||
+      (settings_.gyro_limit_radps > 0 && s.w_NB_B.cwiseAbs().maxCoeff() >= settings_.gyro_limit_radps)) {
+    verdict.flags |= flag::kSaturation;
+  }
+  if (gap) verdict.flags |= flag::kGap;
+  if (started_) learn_interval(dt_s);
+  verdict.usable = true;
+  verdict.dt_s = dt_s;
+  started_ = true;
+  last_utime_ = s.utime;
+  last_f_B_ = s.f_B;
+  return verdict;
+}
+
+}  // namespace waverig::estimator

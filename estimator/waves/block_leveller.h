@@ -1,0 +1,71 @@
+// BlockLeveller: attitude for a platform that sways about a place, told block by block with a bounded delay.
+//
+// Within a block the gyro is integrated from an unknown start attitude with an unknown, constant bias. Both follow
+// from the physics of a platform that stays where it is: over whole waves its mean acceleration is nought, so the
+// levelled specific force has no horizontal offset and no horizontal drift. Weighted least squares over the block,
+//
+//   f_N(t) = R(t) f_B(t),  horizontal part of  f_N + phi(t) x f_N = 0 + waves,  phi(t) = phi_0 - (integral R dt) db
+//
+// iterated (the first block may lean by tens of degrees). The taper keeps the cut waves at the block's ends from
+// leaning the frame. Heading starts at nought and drifts: N is a level frame that turns slowly.
+#pragma once
+#include <deque>
+#include <vector>
+
+#include "estimator/sample_guard.h"
+#include "estimator/types.h"
+
+namespace waverig::estimator {
+
+struct BlockLevellerSettings {
+  double gravity_mps2 = kStandardGravity;
+  double gyro_bias_sigma_radps = 0.2 * kDegree;
+  double block_s = 100;
+  double taper_s = 20;
+  double longest_gap_s = 0.4;     // beyond it the rotation across the gap is not known: a new block begins
+};
+
+struct LevelledSample {
+  std::int64_t utime = 0;
+  std::int64_t seq = 0;
+  std::int32_t flags = 0;
+  bool usable = false;            // f_B may enter a fit
+  double t_s = 0;                 // since the record's first sample
+  double up_mps2 = 0;             // levelled vertical acceleration, up positive, gravity taken off
+  Vector3d f_B = Vector3d::Zero();
+  Quaterniond q_NB = Quaterniond::Identity();
+};
+
+class BlockLeveller {
+ public:
+  explicit BlockLeveller(const BlockLevellerSettings& settings) : settings_(settings) {}
+
+  // Samples as they come, with what the guard says of them; levelled ones are appended to out, each sample once and
+  // in order, later by half a block or more.
+  void add(const ImuSample& sample, const GuardVerdict& verdict, std::deque<LevelledSample>& out);
+  void finish(std::deque<LevelledSample>& out);
+
+  const Vector3d& gyro_bias_B() const { return bias_B_; }   // rad/s, of the last block
+
+ private:
+  struct Raw {
+    LevelledSample levelled;
+    Vector3d w_B;
+    double dt_s;                  // since the usable sample before
+    bool rotates;                 // w_B is good
+  };
+  void level(std::size_t count, std::deque<LevelledSample>& out);
+  bool iterate();                 // one Gauss-Newton step; true once it no longer moves
+  double integrate();             // attitude along the block; returns its duration
+
+  BlockLevellerSettings settings_;
+  std::deque<Raw> raw_;
+  std::size_t given_ = 0;         // samples at the front of raw_ that have been given out already
+  bool started_ = false, has_attitude_ = false;
+  std::int64_t first_utime_ = 0;
+  double last_t_s_ = 0;
+  Quaterniond q_start_ = Quaterniond::Identity();   // at raw_.front()
+  Vector3d bias_B_ = Vector3d::Zero();
+};
+
+}  // namespace waverig::estimator

@@ -1,0 +1,180 @@
+#include "estimator/waves/regular_waves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "estimator/waves/height_budget.h"
+#include "lcmtypes/flags.h"
+
+namespace waverig::estimator {
+namespace {
+
+using std::numbers::pi;
+
+constexpr std::size_t kNeighbours = 4;   // on either side: noise and mean force are told together
+
+// Calls visit(wave j) for k and its unbroken neighbours, as far as kNeighbours.
+template <class Visit>
+void for_neighbours(const std::vector<RegularWave>& waves, std::size_t k, const Visit& visit) {
+  visit(waves[k]);
+  for (std::size_t j = k; j > 0 && k - j < kNeighbours && waves[j].follows; --j) visit(waves[j - 1]);
+  for (std::size_t j = k + 1; j < waves.size() && j - k <= kNeighbours && waves[j].follows; ++j) visit(waves[j]);
+}
+
+// Drift of the acceleration across wave k, from the offsets of the waves beside it.
+double drift_mps3(const std::vector<RegularWave>& waves, std::size_t k) {
+  const WaveFit& before = waves[k > 0 && waves[k].follows ? k - 1 : k].fit;
+  const WaveFit& after = waves[k + 1 < waves.size() && waves[k + 1].follows ? k + 1 : k].fit;
+  const double dt = after.middle_s - before.middle_s;
+  return dt > 0 ? (after.offset_mps2 - before.offset_mps2) / dt : 0.0;
+}
+
+std::vector<RegularWave> first_fits(const WaveSeries& series, double period_s) {
+  std::vector<RegularWave> waves;
+  bool broken = true;
+  for (const WaveSpan& span : find_waves(series, period_s)) {
+    RegularWave wave;
+    wave.follows = span.follows && !broken;
+    wave.fit = fit_wave(series, span.begin_s, span.end_s, 2 * pi / (span.end_s - span.begin_s), 0);
+    broken = !wave.fit.valid;
+    if (!broken) waves.push_back(wave);
+  }
+  return waves;
+}
+
+// Frequency and drift from the neighbours, then the fit again: at the second time the crossings are free of the
+// drift and of each span's own noisy length.
+void refit_alike(const WaveSeries& series, std::vector<RegularWave>& waves) {
+  std::vector<WaveFit> fits;
+  for (std::size_t k = 0; k < waves.size(); ++k) {
+    double seconds = 0, count = 0;
+    for_neighbours(waves, k, [&](const RegularWave& w) {
+      seconds += w.fit.end_s - w.fit.begin_s;
+      count += 1;
+    });
+    const WaveFit& f = waves[k].fit;
+    const bool alike = std::abs(seconds / count / (f.end_s - f.begin_s) - 1) < 0.1;
+    const double w = alike ? 2 * pi * count / seconds : f.omega_radps;
+    const double middle = f.down_crossing_s();
+    fits.push_back(fit_wave(series, middle - pi / w, middle + pi / w, w, drift_mps3(waves, k)));
+  }
+  for (std::size_t k = 0; k < waves.size(); ++k) {
+    if (fits[k].valid) waves[k].fit = fits[k];
+  }
+}
+
+void pool_noise(std::vector<RegularWave>& waves) {
+  for (std::size_t k = 0; k < waves.size(); ++k) {
+    std::vector<double> densities;
+    for_neighbours(waves, k, [&](const RegularWave& w) { densities.push_back(w.fit.noise_density); });
+    const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
+    std::nth_element(densities.begin(), middle, densities.end());
+    const double limit = 2 * *middle;   // a neighbour with a knock in it does not speak for the noise
+    double squares = 0, count = 0;
+    for (const double d : densities) {
+      if (d > limit) continue;
+      squares += d * d;
+      count += 1;
+    }
+    waves[k].noise_density = std::sqrt(squares / count);
+  }
+}
+
+// In phase with the wave the drift told by the neighbours' offsets adds a part: (T/pi)^2 var(slope).
+double amplitude_sigma(const RegularWave& wave) {
+  const double T = wave.fit.end_s - wave.fit.begin_s, d = wave.noise_density;
+  const double drift = d * d / (4 * pi * pi * T), fit = wave.fit.sigma_per_density * d;
+  return std::sqrt(fit * fit + drift);
+}
+
+void drop_unclear(std::vector<RegularWave>& waves, double least_snr) {
+  bool dropped = false;
+  std::vector<RegularWave> kept;
+  for (RegularWave& wave : waves) {
+    const bool clear = wave.fit.amplitude_mps2() > least_snr * amplitude_sigma(wave);
+    if (dropped) wave.follows = false;
+    dropped = !clear;
+    if (clear) kept.push_back(wave);
+  }
+  waves.swap(kept);
+}
+
+void share_timing(std::vector<RegularWave>& waves, double floor) {
+  std::vector<WaveEvent> events;
+  for (const RegularWave& wave : waves) {
+    const double w = wave.fit.omega_radps, phase_sigma = amplitude_sigma(wave) / wave.fit.amplitude_mps2();
+    events.push_back({wave.fit.down_crossing_s(), std::hypot(phase_sigma, 2 * pi * floor) / w, wave.follows});
+  }
+  const std::vector<WaveTiming> timings = share_frequency(events);
+  for (std::size_t k = 0; k < waves.size(); ++k) {
+    waves[k].timing = timings[k];
+    if (timings[k].waves < 2) {   // alone: its own length, from two crossings of its own
+      waves[k].timing.period_s = waves[k].fit.end_s - waves[k].fit.begin_s;
+      waves[k].timing.sigma_s = 2 * events[k].sigma_s;
+    }
+  }
+}
+
+void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves, std::size_t k,
+                 const RegularWaveSettings& settings, const SensorKnowledge& knowledge, RegularWave& wave) {
+  const double w = wave.fit.omega_radps, sigma = amplitude_sigma(wave), raw = wave.fit.amplitude_mps2();
+  double mean_up = 0, count = 0;
+  for_neighbours(waves, k, [&](const RegularWave& other) {
+    mean_up += other.fit.offset_mps2;
+    count += 1;
+  });
+  const double mean_sigma = wave.noise_density / std::sqrt(2 * count * wave.timing.period_s);
+  const AmplitudeBudget budget = amplitude_budget(series, wave.fit, knowledge, mean_up / count, mean_sigma);
+  // Noise across the phase only ever lengthens the amplitude: E[A^2] = A0^2 + sigma^2 from that side.
+  const double amplitude = std::sqrt(std::max(0.0, raw * raw - sigma * sigma)) - budget.correction_mps2;
+  const double height_per_amplitude = 2 / (w * w);
+  wave.height_m = height_per_amplitude * amplitude;
+  wave.noise_sigma_m = height_per_amplitude * sigma;
+  wave.calibration_sigma_m = height_per_amplitude * budget.calibration_sigma_mps2;
+  wave.tilt_sigma_m = height_per_amplitude * budget.tilt_sigma_mps2;
+  wave.frequency_sigma_m = wave.height_m * 2 * wave.timing.sigma_s / wave.timing.period_s;
+
+  if (raw < settings.clear_snr * sigma) wave.flags |= flag::kBelowNoise;
+  const double expected = wave.fit.misfit_mps2 * wave.noise_density / std::max(wave.fit.noise_density, 1e-12);
+  const double misfit = std::sqrt(std::max(0.0, wave.fit.misfit_mps2 * wave.fit.misfit_mps2 - expected * expected));
+  bool settling = wave.timing.waves < 3 || misfit > settings.settled_misfit * raw;
+  const auto spacing_differs = [&](double spacing_s) {
+    return std::abs(spacing_s / wave.timing.period_s - 1) > settings.settled_period + 3 * sigma / raw;
+  };
+  if (wave.follows) {
+    settling |= spacing_differs(waves[k].fit.down_crossing_s() - waves[k - 1].fit.down_crossing_s());
+  }
+  if (k + 1 < waves.size() && waves[k + 1].follows) {
+    settling |= spacing_differs(waves[k + 1].fit.down_crossing_s() - waves[k].fit.down_crossing_s());
+  }
+  if (settling) wave.flags |= flag::kSettling;
+}
+
+}  // namespace
+
+std::vector<RegularWave> regular_waves(const WaveSeries& series, double period_s, const RegularWaveSettings& settings,
+                                       const SensorKnowledge& knowledge) {
+  std::vector<RegularWave> waves = first_fits(series, period_s);
+  refit_alike(series, waves);
+  pool_noise(waves);
+  drop_unclear(waves, settings.least_snr);
+  share_timing(waves, settings.timing_floor);
+
+  std::vector<RegularWave> result;
+  for (std::size_t k = 0; k < waves.size(); ++k) {
+    RegularWave wave = waves[k];
+    wave.fit = fit_wave(series, wave.begin_s(), wave.end_s(), 2 * pi / wave.timing.period_s, drift_mps3(waves, k));
+    const bool whole = wave.begin_s() >= series.begin_s() - WaveSeries::kBin_s &&
+                       wave.end_s() <= series.end_s() + WaveSeries::kBin_s;
+    if (!whole || !wave.fit.valid) {
+      if (k + 1 < waves.size()) waves[k + 1].follows = false;
+      continue;
+    }
+    tell_height(series, waves, k, settings, knowledge, wave);
+    result.push_back(wave);
+  }
+  return result;
+}
+
+}  // namespace waverig::estimator
