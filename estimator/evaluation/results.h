@@ -53,6 +53,7 @@ struct RunResult {
   std::int64_t excluded_waves = 0;    // in ramps or cut by the record's edge
   double heave_gain = estimator::kUnknown;     // estimated over true heave, least squares over the steady part
   double heave_lag_s = estimator::kUnknown;    // positive: the estimate comes late
+  double heave_sigma_ratio = estimator::kUnknown;   // rms of error over stated sigma; 1: honest, above: too sure
   double true_hm0_m = estimator::kUnknown;     // 4 standard deviations of the true heave over the steady part
   double true_tm02_s = estimator::kUnknown;    // of the true heave and its rate
   double noise_density_mps2_rthz = estimator::kUnknown;   // of the sensor's vertical acceleration, for the bound
@@ -76,7 +77,6 @@ struct CampaignResults {
   std::vector<CellResult> cells;   // by period, height, method
   std::vector<RunResult> runs;
   std::string calibration_json;    // report of the campaign's own calibration, verbatim
-  std::string settings_toml;       // resolved settings, verbatim; shards of one campaign have the same
 };
 
 }  // namespace waverig::evaluation

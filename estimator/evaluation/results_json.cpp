@@ -170,6 +170,7 @@ void fields(auto& a, Is<RunResult> auto& r) {
   a("heave_rmse_m", r.heave_rmse_m);
   a("heave_gain", r.heave_gain);
   a("heave_lag_s", r.heave_lag_s);
+  a("heave_sigma_ratio", r.heave_sigma_ratio);
   a("true_hm0_m", r.true_hm0_m);
   a("true_tm02_s", r.true_tm02_s);
   a("noise_density_mps2_rthz", r.noise_density_mps2_rthz);
@@ -192,7 +193,6 @@ void fields(auto& a, Is<CampaignResults> auto& r) {
   a("command", r.command);
   a("seed", r.seed);
   a("complete", r.complete);
-  a("settings_toml", r.settings_toml);
   a("cells", r.cells);
   a("runs", r.runs);
 }

@@ -8,6 +8,7 @@
 #include "estimator/evaluation/bound.h"
 #include "estimator/evaluation/height_statistics.h"
 #include "estimator/evaluation/run_record.h"
+#include "estimator/evaluation/zero_crossing.h"
 #include "lcmtypes/flags.h"
 #include "lcmtypes/phase.h"
 
@@ -66,14 +67,21 @@ void RunJudge::add(const truth_t& message) {
 void RunJudge::add(std::string_view method, const estimator::HeaveSample& heave) {
   if (!steady(heave.utime) || !std::isfinite(heave.heave_m)) return;
   OfMethod& m = of(method);
-  const PendingHeave sample{heave.utime, heave.heave_m};
+  const Heave sample{heave.utime, heave.heave_m, heave.heave_sigma_m};
+  if (m.waves.empty() && (m.series.empty() || m.series.back().utime < sample.utime))
+    m.series.push_back(sample);
   if (truth_.empty() || truth_.last_utime() < heave.utime)
     m.pending.push_back(sample);
   else
-    compare(m.sums, sample);
+    compare(m.comparison, sample);
 }
 
-void RunJudge::add(std::string_view method, const estimator::Wave& wave) { of(method).waves.push_back(wave); }
+void RunJudge::add(std::string_view method, const estimator::Wave& wave) {
+  OfMethod& m = of(method);
+  m.waves.push_back(wave);
+  m.series = {};
+}
+
 void RunJudge::add(std::string_view method, const estimator::SeaState& sea) {
   of(method).seas.push_back(sea);
 }
@@ -85,25 +93,14 @@ bool RunJudge::steady(std::int64_t utime) const {
 void RunJudge::settle(OfMethod& method) {
   std::size_t done = 0;
   while (done < method.pending.size() && method.pending[done].utime <= truth_.last_utime())
-    compare(method.sums, method.pending[done++]);
+    compare(method.comparison, method.pending[done++]);
   method.pending.erase(method.pending.begin(), method.pending.begin() + static_cast<std::ptrdiff_t>(done));
 }
 
-void RunJudge::compare(HeaveSums& s, const PendingHeave& heave) const {
+void RunJudge::compare(HeaveComparison& comparison, const Heave& heave) const {
   const TruthSeries::Point truth = truth_.at(heave.utime);
-  if (!std::isfinite(truth.heave_m)) return;
-  const double h = heave.heave_m, t = truth.heave_m, r = truth.heave_rate_mps, e = h - t;
-  s.n += 1;
-  s.e += e;
-  s.ee += e * e;
-  s.h += h;
-  s.t += t;
-  s.r += r;
-  s.tt += t * t;
-  s.rr += r * r;
-  s.tr += t * r;
-  s.ht += h * t;
-  s.hr += h * r;
+  if (std::isfinite(truth.heave_m))
+    comparison.add(heave.heave_m, truth.heave_m, truth.heave_rate_mps, heave.sigma_m);
 }
 
 std::vector<RunResult> RunJudge::finish() {
@@ -111,6 +108,16 @@ std::vector<RunResult> RunJudge::finish() {
   std::vector<RunResult> results;
   for (auto& [name, method] : methods_) results.push_back(result_of(name, method));
   return results;
+}
+
+std::vector<estimator::Wave> RunJudge::counted_waves(const OfMethod& method) {
+  std::vector<std::int64_t> utime;
+  std::vector<double> heave_m;
+  for (const Heave& heave : method.series) {
+    utime.push_back(heave.utime);
+    heave_m.push_back(heave.heave_m);
+  }
+  return waves_of(count_waves(utime, heave_m, {.interpolate_extremes = true}));
 }
 
 RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
@@ -123,6 +130,7 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
   result.noise_density_mps2_rthz = settings_.noise_density_mps2_rthz;
   result.seas = std::move(method.seas);
 
+  if (method.waves.empty()) method.waves = counted_waves(method);
   HeightAccumulator accumulator;
   for (const estimator::Wave& wave : method.waves) {
     const std::int64_t end = wave.start_utime + std::llround(wave.period_s / kMicrosecond);
@@ -144,18 +152,10 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
     result.true_hm0_m = sea.hm0_m;
     result.true_tm02_s = sea.tm02_s;
   }
-  const HeaveSums& s = method.sums;
-  if (s.n < 2) return result;
-  result.heave_rmse_m = std::sqrt(std::max(0.0, s.ee / s.n - s.e * s.e / (s.n * s.n)));
-  // heave = a true + b rate. For a harmonic of rate w: a = G cos(w lag), b = -G sin(w lag) / w.
-  const double tt = s.tt - s.t * s.t / s.n, rr = s.rr - s.r * s.r / s.n, tr = s.tr - s.t * s.r / s.n;
-  const double ht = s.ht - s.h * s.t / s.n, hr = s.hr - s.h * s.r / s.n;
-  const double determinant = tt * rr - tr * tr;
-  if (!(determinant > 0)) return result;
-  const double a = (ht * rr - hr * tr) / determinant, b = (hr * tt - ht * tr) / determinant;
-  const double w = std::sqrt(rr / tt);
-  result.heave_gain = std::hypot(a, b * w);
-  result.heave_lag_s = std::atan2(-b * w, a) / w;
+  result.heave_rmse_m = method.comparison.rmse_m();
+  result.heave_gain = method.comparison.gain();
+  result.heave_lag_s = method.comparison.lag_s();
+  result.heave_sigma_ratio = method.comparison.sigma_ratio();
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "estimator/evaluation/heave_comparison.h"
 #include "estimator/evaluation/results.h"
 #include "estimator/evaluation/truth_series.h"
 
@@ -40,25 +41,23 @@ class RunJudge {
   std::vector<RunResult> finish();
 
  private:
-  // Heave against truth: sums for the error's scatter and for the regression on the true heave and its rate.
-  struct HeaveSums {
-    double n = 0, e = 0, ee = 0, h = 0, t = 0, r = 0, tt = 0, rr = 0, tr = 0, ht = 0, hr = 0;
-  };
-  struct PendingHeave {
+  struct Heave {
     std::int64_t utime;
-    double heave_m;
+    double heave_m, sigma_m;
   };
   struct OfMethod {
     std::vector<estimator::Wave> waves;
     std::vector<estimator::SeaState> seas;
-    std::vector<PendingHeave> pending;  // heave that the truth has not reached yet
-    HeaveSums sums;
+    std::vector<Heave> pending;  // heave that the truth has not reached yet
+    HeaveComparison comparison;
+    std::vector<Heave> series;  // of a method that gives no waves of its own: they are counted in its heave
   };
 
   OfMethod& of(std::string_view method);
   bool steady(std::int64_t utime) const;
   void settle(OfMethod& method);
-  void compare(HeaveSums& sums, const PendingHeave& heave) const;
+  void compare(HeaveComparison& comparison, const Heave& heave) const;
+  static std::vector<estimator::Wave> counted_waves(const OfMethod& method);
   RunResult result_of(const std::string& name, OfMethod& method) const;
 
   std::string run_;

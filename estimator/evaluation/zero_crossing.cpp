@@ -133,6 +133,19 @@ double leading_mean(std::span<const CountedWave> sorted, double count, Value val
 
 }  // namespace
 
+std::vector<estimator::Wave> waves_of(std::span<const CountedWave> counted) {
+  std::vector<estimator::Wave> waves;
+  for (const CountedWave& c : counted) {
+    estimator::Wave wave;
+    wave.start_utime = c.start_utime;
+    wave.seq = static_cast<std::int64_t>(waves.size());
+    wave.period_s = c.period_s;
+    wave.height_m = c.height_m;
+    waves.push_back(wave);
+  }
+  return waves;
+}
+
 WaveStatistics statistics_of(std::span<const CountedWave> waves) {
   WaveStatistics s;
   s.waves = static_cast<std::int64_t>(waves.size());

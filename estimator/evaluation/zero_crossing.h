@@ -36,6 +36,9 @@ struct CountedWave {
 std::vector<CountedWave> count_waves(std::span<const std::int64_t> utime, std::span<const double> heave_m,
                                      const ZeroCrossingSettings& settings = {});
 
+// The same as single waves of a method that states no uncertainty.
+std::vector<estimator::Wave> waves_of(std::span<const CountedWave> counted);
+
 struct WaveStatistics {
   std::int64_t waves = 0;
   double mean_height_m = estimator::kUnknown, std_height_m = estimator::kUnknown, h13_m = estimator::kUnknown,

@@ -48,7 +48,6 @@ CampaignResults campaign() {
   c.command = "waverig sweep";
   c.seed = 18446744073709551615u;
   c.complete = true;
-  c.settings_toml = "[a]\nb = 1\n";
   c.calibration_json = R"({"bias":[1,2,3]})";
   c.runs = {run(12, 0.6, "harmonic", 1, 0.601), run(6, 0.6, "lee2014", 0, 0.62),
             run(6, 0.6, "harmonic", 1, 0.599), run(6, 0.6, "harmonic", 0, 0.598)};
@@ -90,7 +89,6 @@ TEST(Results, ComeBackFromTheDiskWhole) {
   write_results(scratch.path(), c);
   const CampaignResults back = read_results(scratch.path());
   EXPECT_EQ(back.seed, c.seed);
-  EXPECT_EQ(back.settings_toml, c.settings_toml);
   EXPECT_EQ(nlohmann::json::parse(back.calibration_json), nlohmann::json::parse(c.calibration_json));
   ASSERT_EQ(back.runs.size(), 4u);
   EXPECT_EQ(back.runs[0].waves.size(), 5u);

@@ -1,0 +1,134 @@
+#include "estimator/evaluation/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waverig::evaluation {
+namespace {
+
+constexpr double kCoverageFactor = 2;
+
+double mean_error_m(const CellResult& cell) {
+  const HeightStatistics& s = cell.statistics;
+  const double reference = std::isfinite(s.mean_true_height_m) ? s.mean_true_height_m : cell.height_m;
+  return std::abs(s.mean_height_m - reference);
+}
+
+double std_sigma_m(const HeightStatistics& s) {
+  return s.waves > 1 ? s.std_m / std::sqrt(2.0 * static_cast<double>(s.waves - 1)) : estimator::kUnknown;
+}
+
+Difference judged(double baseline, double candidate, double sigma) {
+  Difference d{baseline, candidate, sigma, Verdict::kNotSignificant};
+  const double change = candidate - baseline;
+  if (std::isfinite(baseline) && !std::isfinite(candidate))
+    d.verdict = Verdict::kWorse;  // it says nothing any more
+  if (std::isfinite(change) && !(std::abs(change) <= kCoverageFactor * sigma) && change != 0)
+    d.verdict = change < 0 ? Verdict::kBetter : Verdict::kWorse;
+  return d;
+}
+
+CellComparison compared(const CellResult& baseline, const CellResult& candidate) {
+  const HeightStatistics &b = baseline.statistics, &c = candidate.statistics;
+  CellComparison result{baseline.period_s, baseline.height_m, baseline.method, {}, {}, {}};
+  result.mean_error_m =
+      judged(mean_error_m(baseline), mean_error_m(candidate),
+             std::hypot(b.expanded_uncertainty_m, c.expanded_uncertainty_m) / kCoverageFactor);
+  result.std_m = judged(b.std_m, c.std_m, std::hypot(std_sigma_m(b), std_sigma_m(c)));
+  for (const Verdict verdict : {Verdict::kWorse, Verdict::kBetter})
+    if (result.mean_error_m.verdict == verdict || result.std_m.verdict == verdict) {
+      result.verdict = verdict;
+      break;
+    }
+  return result;
+}
+
+bool same_setting(const CellResult& a, const CellResult& b) {
+  return std::abs(a.period_s - b.period_s) < 1e-9 && std::abs(a.height_m - b.height_m) < 1e-9 &&
+         a.method == b.method;
+}
+
+const CellResult* find(std::span<const CellResult> cells, const CellResult& like) {
+  const auto at =
+      std::find_if(cells.begin(), cells.end(), [&](const CellResult& c) { return same_setting(c, like); });
+  return at == cells.end() ? nullptr : &*at;
+}
+
+CellComparison alone(const CellResult& cell, Verdict verdict) {
+  CellComparison result{cell.period_s, cell.height_m, cell.method, {}, {}, verdict};
+  const bool in_baseline = verdict == Verdict::kOnlyInBaseline;
+  (in_baseline ? result.mean_error_m.baseline : result.mean_error_m.candidate) = mean_error_m(cell);
+  (in_baseline ? result.std_m.baseline : result.std_m.candidate) = cell.statistics.std_m;
+  result.mean_error_m.verdict = result.std_m.verdict = verdict;
+  return result;
+}
+
+std::string number(double value_m, int precision) {
+  return std::isfinite(value_m) ? fmt::format("{:.{}f}", value_m / kCentimetre, precision) : std::string();
+}
+
+}  // namespace
+
+std::vector<CellComparison> compare_cells(std::span<const CellResult> baseline,
+                                          std::span<const CellResult> candidate) {
+  std::vector<CellComparison> result;
+  for (const CellResult& cell : baseline) {
+    const CellResult* other = find(candidate, cell);
+    result.push_back(other != nullptr ? compared(cell, *other) : alone(cell, Verdict::kOnlyInBaseline));
+  }
+  for (const CellResult& cell : candidate)
+    if (find(baseline, cell) == nullptr) result.push_back(alone(cell, Verdict::kOnlyInCandidate));
+  return result;
+}
+
+bool any_worse(std::span<const CellComparison> cells) {
+  return std::any_of(cells.begin(), cells.end(),
+                     [](const CellComparison& c) { return c.verdict == Verdict::kWorse; });
+}
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kBetter:
+      return "better";
+    case Verdict::kWorse:
+      return "worse";
+    case Verdict::kNotSignificant:
+      return "not significant";
+    case Verdict::kOnlyInBaseline:
+      return "only in baseline";
+    case Verdict::kOnlyInCandidate:
+      return "new";
+  }
+  return "";
+}
+
+std::string comparison_csv(std::span<const CellComparison> cells) {
+  std::string text =
+      "period_s,height_cm,method,verdict,baseline_mean_error_cm,mean_error_cm,mean_error_sigma_cm,mean_error_"
+      "verdict,"
+      "baseline_std_cm,std_cm,std_sigma_cm,std_verdict\n";
+  const auto columns = [](const Difference& d) {
+    return fmt::format(",{},{},{},{}", number(d.baseline, 4), number(d.candidate, 4), number(d.sigma, 4),
+                       name_of(d.verdict));
+  };
+  for (const CellComparison& c : cells)
+    text += fmt::format("{:g},{:g},{},{}{}{}\n", c.period_s, c.height_m / kCentimetre, c.method,
+                        name_of(c.verdict), columns(c.mean_error_m), columns(c.std_m));
+  return text;
+}
+
+std::string comparison_table(std::span<const CellComparison> cells) {
+  std::string text = fmt::format("{:>8} {:>9}  {:<14} {:>20} {:>20}  {}\n", "period s", "height cm", "method",
+                                 "mean error cm", "std cm", "verdict");
+  const auto change = [](const Difference& d) {
+    return fmt::format("{} -> {}", number(d.baseline, 3), number(d.candidate, 3));
+  };
+  for (const CellComparison& c : cells)
+    text += fmt::format("{:8.1f} {:9.1f}  {:<14} {:>20} {:>20}  {}\n", c.period_s, c.height_m / kCentimetre,
+                        c.method, change(c.mean_error_m), change(c.std_m), name_of(c.verdict));
+  return text;
+}
+
+}  // namespace waverig::evaluation

@@ -1,0 +1,42 @@
+// Two campaigns of the same settings, cell by cell: is the candidate better, worse, or is the difference
+// within what the two state of their own uncertainty?
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "estimator/evaluation/results.h"
+
+namespace waverig::evaluation {
+
+enum class Verdict { kBetter, kWorse, kNotSignificant, kOnlyInBaseline, kOnlyInCandidate };
+
+// One quantity of a cell; smaller is better. sigma: standard uncertainty of the difference, k = 1.
+struct Difference {
+  double baseline = estimator::kUnknown, candidate = estimator::kUnknown, sigma = estimator::kUnknown;
+  Verdict verdict = Verdict::kNotSignificant;
+};
+
+struct CellComparison {
+  double period_s = 0;
+  double height_m = 0;
+  std::string method;
+  // |mean - true mean| (set height where the truth is unknown). Its uncertainty: the expanded uncertainties
+  // / 2.
+  Difference mean_error_m;
+  // Standard deviation of single waves. Its uncertainty: std / sqrt(2 (n - 1)), of normal scatter.
+  Difference std_m;
+  Verdict verdict = Verdict::kNotSignificant;  // worse if either is, else better if either is
+};
+
+// A difference is significant where it exceeds two standard uncertainties (k = 2). Cells are matched by
+// period, height and method, in the order of the baseline, then what only the candidate has.
+std::vector<CellComparison> compare_cells(std::span<const CellResult> baseline,
+                                          std::span<const CellResult> candidate);
+
+bool any_worse(std::span<const CellComparison> cells);
+const char* name_of(Verdict verdict);
+std::string comparison_csv(std::span<const CellComparison> cells);
+std::string comparison_table(std::span<const CellComparison> cells);  // for people
+
+}  // namespace waverig::evaluation

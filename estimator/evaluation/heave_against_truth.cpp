@@ -1,0 +1,89 @@
+#include "estimator/evaluation/heave_against_truth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/evaluation/high_pass.h"
+#include "lcmtypes/error.h"
+
+namespace waverig::evaluation {
+namespace {
+
+// Straight lines between the known values of a series, read at growing times.
+class Interpolated {
+ public:
+  Interpolated(const HeaveSeries& series) {
+    for (std::size_t i = 0; i < series.utime.size(); ++i) {
+      if (!std::isfinite(series.heave_m[i])) continue;
+      utime_.push_back(series.utime[i]);
+      value_.push_back(series.heave_m[i]);
+    }
+  }
+  bool empty() const { return utime_.empty(); }
+  std::int64_t begin() const { return utime_.front(); }
+  std::int64_t end() const { return utime_.back(); }
+  double at(std::int64_t utime) {
+    while (next_ + 1 < utime_.size() && utime_[next_] < utime) ++next_;
+    if (next_ == 0 || utime_[next_] == utime) return value_[next_];
+    const double x = static_cast<double>(utime - utime_[next_ - 1]) /
+                     static_cast<double>(utime_[next_] - utime_[next_ - 1]);
+    return value_[next_ - 1] + x * (value_[next_] - value_[next_ - 1]);
+  }
+
+ private:
+  std::vector<std::int64_t> utime_;
+  std::vector<double> value_;
+  std::size_t next_ = 0;
+};
+
+std::int64_t median_interval(const std::vector<std::int64_t>& utime) {
+  std::vector<std::int64_t> interval;
+  for (std::size_t i = 1; i < utime.size(); ++i) interval.push_back(utime[i] - utime[i - 1]);
+  const auto middle = interval.begin() + static_cast<std::ptrdiff_t>(interval.size() / 2);
+  std::nth_element(interval.begin(), middle, interval.end());
+  return *middle;
+}
+
+}  // namespace
+
+HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& truth,
+                                   const AgainstTruthSettings& settings) {
+  Interpolated estimate(heave), reference(truth);
+  if (estimate.empty() || reference.empty() || truth.utime.size() < 3)
+    throw UserError("heave and truth: one of them holds no heave; expected two series of one record");
+  const std::int64_t begin = std::max(estimate.begin(), reference.begin()),
+                     end = std::min(estimate.end(), reference.end());
+  const std::int64_t step = median_interval(truth.utime);
+  if (end - begin < 10 * step)
+    throw UserError("heave and truth: they do not overlap in time; expected two series of one record");
+
+  // An even grid over the common time, both series on it, filtered alike.
+  const auto count = static_cast<std::size_t>((end - begin) / step) + 1;
+  std::vector<double> h(count), t(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int64_t utime = begin + static_cast<std::int64_t>(i) * step;
+    h[i] = estimate.at(utime);
+    t[i] = reference.at(utime);
+  }
+  const double rate_hz = 1 / (static_cast<double>(step) * kMicrosecond);
+  if (settings.high_pass_hz > 0) {
+    h = high_passed(h, rate_hz, settings.high_pass_hz);
+    t = high_passed(t, rate_hz, settings.high_pass_hz);
+  }
+
+  HeaveComparison comparison;
+  const auto edge = static_cast<std::size_t>(std::llround(settings.edge_s * rate_hz));
+  std::size_t row = 0;
+  for (std::size_t i = std::max<std::size_t>(1, edge); i + 1 + edge < count; ++i) {
+    const std::int64_t utime = begin + static_cast<std::int64_t>(i) * step;
+    while (row + 1 < truth.utime.size() && truth.utime[row + 1] <= utime) ++row;
+    const bool known =
+        std::isfinite(truth.heave_m[row]) &&
+        (row + 1 == truth.utime.size() || truth.utime[row] == utime || std::isfinite(truth.heave_m[row + 1]));
+    if (!known || (!truth.moving.empty() && !truth.moving[row])) continue;
+    comparison.add(h[i], t[i], (t[i + 1] - t[i - 1]) * rate_hz / 2);
+  }
+  return comparison;
+}
+
+}  // namespace waverig::evaluation

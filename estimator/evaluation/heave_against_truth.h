@@ -1,0 +1,18 @@
+// A heave series against a measured truth, e.g. optical motion capture.
+#pragma once
+#include "estimator/evaluation/heave_comparison.h"
+#include "estimator/evaluation/heave_csv.h"
+
+namespace waverig::evaluation {
+
+struct AgainstTruthSettings {
+  double high_pass_hz = 0;  // both series, zero phase; 0: only the means are removed
+  double edge_s = 0;        // left out at both ends of what is compared
+};
+
+// Compares at the truth's instants that lie within the heave series and whose truth is known; where the truth
+// marks what is moving, only there. Throws UserError where the two do not overlap.
+HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& truth,
+                                   const AgainstTruthSettings& settings);
+
+}  // namespace waverig::evaluation
