@@ -1,0 +1,449 @@
+#include "render/marks.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "render/decimate.h"
+#include "render/stroke.h"
+#include "render/ticks.h"
+
+namespace waverig::render {
+namespace {
+
+constexpr float kFarPx = 30000;  // beyond this a point is moved to the edge of what is exact in float
+
+bool fits(double value, Scale scale) { return std::isfinite(value) && (scale != Scale::kLog || value > 0); }
+
+float near_page(float px) { return std::clamp(px, -kFarPx, kFarPx); }
+
+struct ExtentsOf {
+  Scale xs, ys;
+  MarkExtents out{};
+
+  void add(double x, double y) {
+    if (!fits(x, xs) || !fits(y, ys)) return;
+    out.x.add(x);
+    out.y.add(y);
+    out.has_data = true;
+  }
+  void operator()(const Line& m) {
+    for (std::size_t i = 0; i < std::min(m.x.size(), m.y.size()); ++i) add(m.x[i], m.y[i]);
+    out.pad_x = m.look.marker != Marker::kNone;
+  }
+  void operator()(const Points& m) {
+    for (std::size_t i = 0; i < std::min(m.x.size(), m.y.size()); ++i) add(m.x[i], m.y[i]);
+    out.pad_x = true;
+  }
+  void operator()(const Bars& m) {
+    for (std::size_t i = 0; i < std::min(m.at.size(), m.value.size()); ++i) {
+      if (!std::isfinite(m.value[i])) continue;
+      for (const double edge : {m.at[i] - m.width / 2, m.at[i] + m.width / 2}) {
+        for (const double length : {m.base, m.value[i]}) m.horizontal ? add(length, edge) : add(edge, length);
+      }
+    }
+    out.pad_x = true;
+  }
+  void operator()(const ErrorBars& m) {
+    const std::size_t n = std::min({m.x.size(), m.y.size(), m.minus.size(), m.plus.size()});
+    for (std::size_t i = 0; i < n; ++i) {
+      for (const double d : {-m.minus[i], 0.0, m.plus[i]})
+        m.horizontal ? add(m.x[i] + d, m.y[i]) : add(m.x[i], m.y[i] + d);
+    }
+    out.pad_x = true;
+  }
+  void operator()(const Band& m) {
+    for (std::size_t i = 0; i < std::min({m.x.size(), m.low.size(), m.high.size()}); ++i) {
+      add(m.x[i], m.low[i]);
+      add(m.x[i], m.high[i]);
+    }
+  }
+  void operator()(const Histogram& m) { (*this)(bars_of(m)); }
+  void operator()(const HeatMap& m) {
+    for (const double x : m.x_edges) {
+      for (const double y : m.y_edges) add(x, y);
+    }
+    out.pad_y = false;
+  }
+  void operator()(const Rule& m) {
+    (m.vertical ? out.x : out.y).add(fits(m.at, m.vertical ? xs : ys) ? m.at : kAuto);
+  }
+  void operator()(const Span&) {}
+  void operator()(const Note&) {}
+};
+
+// Points of a series in pixels, cut where a value is missing.
+std::vector<std::vector<Vec2>> runs_of(const std::vector<double>& x, const std::vector<double>& y,
+                                       const PanelView& view) {
+  std::vector<std::vector<Vec2>> runs;
+  bool open = false;
+  const std::size_t n = std::min(x.size(), y.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 p =
+        fits(x[i], view.x.scale) && fits(y[i], view.y.scale) ? view.at(x[i], y[i]) : Vec2{NAN, NAN};
+    if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
+      open = false;
+      continue;
+    }
+    if (!open) runs.emplace_back().reserve(n - i);
+    open = true;
+    runs.back().push_back({near_page(p.x), near_page(p.y)});
+  }
+  return runs;
+}
+
+struct Draw {
+  const PanelView& view;
+  Color color;
+
+  float width(const Look& look) const { return static_cast<float>(look.width_pt) * view.pt; }
+  Color shade(const Look& look) const { return with_alpha(color, static_cast<float>(look.alpha)); }
+  void markers(const std::vector<Vec2>& points, const Look& look) const {
+    for (const Vec2 p : points) {
+      if (p.x < view.plot.left - 50 || p.x > view.plot.right + 50 || p.y < view.plot.top - 50 ||
+          p.y > view.plot.bottom + 50)
+        continue;
+      draw_marker(view.painter, p, look.marker, static_cast<float>(look.marker_pt) * view.pt, shade(look),
+                  view.colors().panel);
+    }
+  }
+
+  void operator()(const Line& m) const {
+    for (std::vector<Vec2>& run : runs_of(m.x, m.y, view)) {
+      if (m.look.marker != Marker::kNone) markers(run, m.look);
+      stroke_dashed(view.painter, decimated(std::move(run)), shade(m.look), width(m.look), m.look.dash);
+    }
+  }
+  // Of many points on one pixel one is enough where they cannot be told apart.
+  void operator()(const Points& m) const {
+    std::vector<Vec2> points;
+    for (const std::vector<Vec2>& run : runs_of(m.x, m.y, view))
+      points.insert(points.end(), run.begin(), run.end());
+    constexpr std::size_t kMany = 20000;
+    if (points.size() > kMany) {
+      const auto cell = [](Vec2 p) { return std::pair(std::lround(p.y), std::lround(p.x)); };
+      std::stable_sort(points.begin(), points.end(), [&](Vec2 a, Vec2 b) { return cell(a) < cell(b); });
+      points.erase(
+          std::unique(points.begin(), points.end(), [&](Vec2 a, Vec2 b) { return cell(a) == cell(b); }),
+          points.end());
+    }
+    markers(points, m.look);
+  }
+  void operator()(const Bars& m) const {
+    for (std::size_t i = 0; i < std::min(m.at.size(), m.value.size()); ++i) {
+      if (!std::isfinite(m.at[i]) || !std::isfinite(m.value[i])) continue;
+      const double from = m.at[i] - m.width / 2, to = m.at[i] + m.width / 2;
+      if (view.panel.polar) {
+        wedge(from, to, m.base, m.value[i], m.look);
+        continue;
+      }
+      const Mapping& lengths = m.horizontal ? view.x : view.y;
+      const double base = lengths.scale == Scale::kLog && m.base <= 0 ? lengths.low : m.base;
+      const auto corner = [&](double at, double length) {
+        return m.horizontal ? view.at(length, at) : view.at(at, length);
+      };
+      const Vec2 a = corner(from, base), b = corner(to, m.value[i]);
+      view.painter.fill_rect(
+          {near_page(std::round(std::min(a.x, b.x))), near_page(std::round(std::min(a.y, b.y))),
+           near_page(std::round(std::max(a.x, b.x))), near_page(std::round(std::max(a.y, b.y)))},
+          shade(m.look));
+    }
+  }
+  void wedge(double from, double to, double base, double value, const Look& look) const {
+    const auto distance = [&](double v) {
+      return std::max(0.0F, static_cast<float>(view.y.share(v)) * view.radius_px());
+    };
+    const std::vector<Vec2> outer = arc(view.centre(), distance(value), from, to);
+    std::vector<Vec2> inner;
+    for (std::size_t k = 0; k < outer.size(); ++k) {
+      inner.push_back(
+          view.polar_at(from + (to - from) * static_cast<double>(k) / static_cast<double>(outer.size() - 1),
+                        distance(base)));
+    }
+    view.painter.fill_between(outer, inner, shade(look));
+    std::vector<Vec2> outline = outer;
+    outline.insert(outline.end(), inner.rbegin(), inner.rend());
+    outline.push_back(outer.front());
+    view.painter.stroke(outline, view.colors().panel, 0.6F * view.pt);
+  }
+  void operator()(const ErrorBars& m) const {
+    const std::size_t n = std::min({m.x.size(), m.y.size(), m.minus.size(), m.plus.size()});
+    const float cap = static_cast<float>(m.look.marker_pt) * 0.5F * view.pt;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto end = [&](double d) {
+        return m.horizontal ? view.at(m.x[i] + d, m.y[i]) : view.at(m.x[i], m.y[i] + d);
+      };
+      Vec2 a = end(-m.minus[i]), b = end(m.plus[i]);
+      if (!m.horizontal && std::isnan(a.y)) a = {b.x, view.plot.bottom + 10};  // below a logarithmic axis
+      if (!std::isfinite(a.x + a.y + b.x + b.y)) continue;
+      a = {near_page(a.x), near_page(a.y)};
+      b = {near_page(b.x), near_page(b.y)};
+      const Vec2 across = m.horizontal ? Vec2{0, cap} : Vec2{cap, 0};
+      const auto line = [&](Vec2 p, Vec2 q) {
+        view.painter.stroke(std::array{p, q}, shade(m.look), width(m.look));
+      };
+      line(a, b);
+      if (cap <= 0) continue;
+      line({a.x - across.x, a.y - across.y}, {a.x + across.x, a.y + across.y});
+      line({b.x - across.x, b.y - across.y}, {b.x + across.x, b.y + across.y});
+    }
+  }
+  void operator()(const Band& m) const {
+    std::vector<Vec2> upper, lower;
+    const auto flush = [&] {
+      view.painter.fill_between(upper, lower, shade(m.look));
+      upper.clear();
+      lower.clear();
+    };
+    for (std::size_t i = 0; i < std::min({m.x.size(), m.low.size(), m.high.size()}); ++i) {
+      double low = m.low[i];
+      if (view.y.scale == Scale::kLog && low <= 0) low = view.y.low * 1e-3;
+      const Vec2 a = view.at(m.x[i], m.high[i]), b = view.at(m.x[i], low);
+      if (!std::isfinite(a.x + a.y + b.y)) {
+        flush();
+        continue;
+      }
+      upper.push_back({near_page(a.x), near_page(a.y)});
+      lower.push_back({near_page(b.x), near_page(b.y)});
+    }
+    flush();
+  }
+  void operator()(const Histogram& m) const { (*this)(bars_of(m)); }
+  void operator()(const HeatMap& m) const {
+    if (m.x_edges.size() < 2 || m.y_edges.size() < 2) return;
+    const ColorScale scale = color_scale_of(m);
+    const std::size_t columns = m.x_edges.size() - 1, rows = m.y_edges.size() - 1;
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t c = 0; c < columns; ++c) {
+        const std::size_t i = r * columns + c;
+        if (i >= m.values.size() || !std::isfinite(m.values[i])) continue;
+        const Vec2 a = view.at(m.x_edges[c], m.y_edges[r + 1]), b = view.at(m.x_edges[c + 1], m.y_edges[r]);
+        const Color fill = scale.at(m.values[i]);
+        view.painter.fill_rect({std::round(a.x), std::round(a.y), std::round(b.x), std::round(b.y)}, fill);
+        const std::string text = i < m.texts.size() ? m.texts[i]
+                                 : m.decimals >= 0  ? number_text(m.values[i], m.decimals)
+                                                    : "";
+        if (text.empty()) continue;
+        cell_text(text, {a.x, a.y, b.x, b.y}, luminance(fill) < 0.3F ? rgb(0xFFFFFF) : rgb(0x1A1A1A));
+      }
+    }
+  }
+  void cell_text(const std::string& text, const Rect& cell, Color ink) const {
+    const float size = view.tick_text_px();
+    std::vector<std::string> lines;
+    for (std::size_t from = 0; from <= text.size();) {
+      const std::size_t to = std::min(text.find('\n', from), text.size());
+      lines.push_back(text.substr(from, to - from));
+      from = to + 1;
+    }
+    const float middle = 0.5F * (cell.top + cell.bottom), pitch = 1.35F * size;
+    if (pitch * static_cast<float>(lines.size()) > cell.height()) lines.resize(1);
+    float y = middle - 0.5F * pitch * static_cast<float>(lines.size() - 1);
+    for (const std::string& line : lines) {
+      if (view.fonts.width_px(line, size) < cell.width())
+        view.painter.text({0.5F * (cell.left + cell.right), y}, line,
+                          {.size_px = size, .color = ink, .h = HAlign::kCenter, .v = VAlign::kMiddle});
+      y += pitch;
+    }
+  }
+  void operator()(const Rule& m) const {
+    const float at = m.vertical ? view.x(m.at) : view.y(m.at);
+    if (!std::isfinite(at) || view.panel.polar) return;
+    const Rect& p = view.plot;
+    const std::array<Vec2, 2> line = m.vertical ? std::array<Vec2, 2>{{{at, p.bottom}, {at, p.top}}}
+                                                : std::array<Vec2, 2>{{{p.left, at}, {p.right, at}}};
+    stroke_dashed(view.painter, line, shade(m.look), width(m.look), m.look.dash);
+    if (m.label.empty()) return;
+    const float gap = 2.5F * view.pt;
+    const TextStyle style{.size_px = view.tick_text_px(),
+                          .color = color,
+                          .h = HAlign::kRight,
+                          .v = m.vertical ? VAlign::kTop : VAlign::kBaseline,
+                          .upwards = m.vertical};
+    if (m.vertical)
+      view.painter.text({at + gap, p.top + gap}, m.label, style);
+    else
+      view.painter.text({p.right - gap, at - gap}, m.label, style);
+  }
+  void operator()(const Span& m) const {
+    const Rect& p = view.plot;
+    const Mapping& axis = m.vertical ? view.x : view.y;
+    const float a = axis(m.from), b = axis(m.to);
+    if (!std::isfinite(a + b)) return;
+    const float low = near_page(std::min(a, b)), high = near_page(std::max(a, b));
+    view.painter.fill_rect(m.vertical ? Rect{low, p.top, high, p.bottom} : Rect{p.left, low, p.right, high},
+                           shade(m.look));
+  }
+  void operator()(const Note& m) const {
+    const Rect& p = view.plot;
+    const Vec2 at = m.in_data ? view.at(m.x, m.y)
+                              : Vec2{p.left + static_cast<float>(m.x) * p.width(),
+                                     p.bottom - static_cast<float>(m.y) * p.height()};
+    if (!std::isfinite(at.x + at.y)) return;
+    std::vector<std::string> lines;
+    for (std::size_t from = 0; from <= m.text.size();) {
+      const std::size_t to = std::min(m.text.find('\n', from), m.text.size());
+      lines.push_back(m.text.substr(from, to - from));
+      from = to + 1;
+    }
+    const float size = kNoteText * view.text_pt, pitch = 1.35F * size;
+    float width_px = 0;
+    for (const std::string& line : lines) width_px = std::max(width_px, view.fonts.width_px(line, size));
+    const float height_px = pitch * static_cast<float>(lines.size());
+    // Kept inside the panel, whatever the place asked for.
+    const float margin = 3 * view.pt;
+    const float left =
+        std::clamp(at.x, p.left + margin, std::max(p.left + margin, p.right - width_px - margin));
+    const float top =
+        std::clamp(at.y, p.top + margin, std::max(p.top + margin, p.bottom - height_px - margin));
+    if (m.boxed)
+      view.painter.fill_rect(
+          {left - margin, top - margin, left + width_px + margin, top + height_px + 0.5F * margin},
+          with_alpha(view.colors().panel, 0.85F));
+    float y = top;
+    for (const std::string& line : lines) {
+      view.painter.text({left, y}, line, {.size_px = size, .color = color, .v = VAlign::kTop});
+      y += pitch;
+    }
+  }
+};
+
+int color_number(const Mark& mark) {
+  return std::visit(
+      [](const auto& m) -> int {
+        if constexpr (requires { m.look; })
+          return m.look.color;
+        else if constexpr (requires { m.color; })
+          return m.color;
+        else
+          return kInk;
+      },
+      mark);
+}
+
+}  // namespace
+
+MarkExtents extents_of(const Mark& mark, Scale x_scale, Scale y_scale) {
+  ExtentsOf extents{x_scale, y_scale};
+  std::visit(extents, mark);
+  return extents.out;
+}
+
+Bars bars_of(const Histogram& histogram) {
+  std::vector<double> values;
+  for (const double v : histogram.values) {
+    if (std::isfinite(v)) values.push_back(v);
+  }
+  Bars bars{.name = histogram.name, .look = histogram.look};
+  if (values.empty()) return bars;
+  std::sort(values.begin(), values.end());
+  double low = values.front(), high = values.back();
+  if (low == high) {
+    const double half = low == 0 ? 0.5 : 0.05 * std::abs(low);
+    low -= half;
+    high += half;
+  }
+  constexpr int kMostBins = 200;
+  int bins = histogram.bins;
+  if (bins <= 0) {
+    // Freedman & Diaconis (1981): width = 2 IQR n^(-1/3)
+    const double iqr = values[values.size() * 3 / 4] - values[values.size() / 4];
+    const double width = 2 * iqr / std::cbrt(static_cast<double>(values.size()));
+    bins = width > 0 ? static_cast<int>(std::min<double>(kMostBins, std::ceil((high - low) / width))) : 10;
+  }
+  bins = std::clamp(bins, 1, kMostBins);
+  bars.width = (high - low) / bins;
+  bars.at.resize(static_cast<std::size_t>(bins));
+  bars.value.assign(bars.at.size(), 0.0);
+  for (std::size_t k = 0; k < bars.at.size(); ++k)
+    bars.at[k] = low + (static_cast<double>(k) + 0.5) * bars.width;
+  const double weight = histogram.density ? 1 / (static_cast<double>(values.size()) * bars.width) : 1;
+  for (const double v : values) {
+    const auto bin = std::min(static_cast<std::size_t>((v - low) / bars.width), bars.value.size() - 1);
+    bars.value[bin] += weight;
+  }
+  return bars;
+}
+
+Mark resolved(const Mark& mark) {
+  if (const auto* histogram = std::get_if<Histogram>(&mark)) return bars_of(*histogram);
+  return mark;
+}
+
+std::vector<Color> colors_of(const std::vector<Mark>& marks, Theme theme) {
+  std::vector<Color> colors;
+  int next = 0;
+  for (const Mark& mark : marks) {
+    const int number = color_number(mark);
+    colors.push_back(number == kInk         ? theme_colors(theme).ink
+                     : number == kFaintInk  ? theme_colors(theme).faint_ink
+                     : number == kNextColor ? palette(theme, next++)
+                                            : palette(theme, number));
+  }
+  return colors;
+}
+
+void draw_mark(const Mark& mark, Color color, const PanelView& view) { std::visit(Draw{view, color}, mark); }
+
+const std::string& name_of(const Mark& mark) {
+  static const std::string kNone;
+  return std::visit(
+      [](const auto& m) -> const std::string& {
+        if constexpr (requires { m.name; })
+          return m.name;
+        else
+          return kNone;
+      },
+      mark);
+}
+
+void draw_swatch(const Mark& mark, Color color, const PanelView& view, const Rect& place) {
+  const float middle = 0.5F * (place.top + place.bottom);
+  std::visit(
+      [&](const auto& m) {
+        using M = std::decay_t<decltype(m)>;
+        if constexpr (requires { m.look; }) {
+          const Color shade = with_alpha(color, static_cast<float>(m.look.alpha));
+          if constexpr (std::is_same_v<M, Bars> || std::is_same_v<M, Band> || std::is_same_v<M, Span>) {
+            const float half = 0.33F * place.height();
+            view.painter.fill_rect(
+                {place.left, std::round(middle - half), place.right, std::round(middle + half)}, shade);
+          } else if constexpr (std::is_same_v<M, ErrorBars>) {
+            const float x = 0.5F * (place.left + place.right), half = 0.45F * place.height();
+            view.painter.stroke(std::array<Vec2, 2>{{{x, middle - half}, {x, middle + half}}}, shade,
+                                static_cast<float>(m.look.width_pt) * view.pt);
+          } else {
+            if constexpr (!std::is_same_v<M, Points>)
+              stroke_dashed(view.painter, std::array<Vec2, 2>{{{place.left, middle}, {place.right, middle}}},
+                            shade, std::max(1.0F, static_cast<float>(m.look.width_pt)) * view.pt,
+                            m.look.dash);
+            draw_marker(view.painter, {0.5F * (place.left + place.right), middle}, m.look.marker,
+                        std::min(static_cast<float>(m.look.marker_pt) * view.pt, place.height()),
+                        with_alpha(color, std::max(0.6F, shade.a)), view.colors().panel);
+          }
+        }
+      },
+      mark);
+}
+
+ColorScale color_scale_of(const HeatMap& heat) {
+  Extent extent;
+  for (const double v : heat.values) {
+    if (!heat.log_colors || v > 0) extent.add(v);
+  }
+  if (extent.empty()) extent = {heat.log_colors ? 0.1 : 0, 1};
+  if (heat.map == ColorMap::kDiverging && !heat.log_colors) {
+    const double most = std::max(std::abs(extent.low), std::abs(extent.high));
+    extent = {-most, most};
+  }
+  if (std::isfinite(heat.low)) extent.low = heat.low;
+  if (std::isfinite(heat.high)) extent.high = heat.high;
+  if (!(extent.low < extent.high)) {
+    const double middle = extent.low;
+    const double half = middle == 0 ? 1 : 0.1 * std::abs(middle);
+    extent = {middle - half, middle + half};
+  }
+  return {{heat.log_colors ? Scale::kLog : Scale::kLinear, extent.low, extent.high, 0, 1}, heat.map};
+}
+
+}  // namespace waverig::render
