@@ -32,13 +32,20 @@ void require(bool good, const char* key, double value, const char* expected) {
 
 std::string_view name_of(AxisState state) {
   switch (state) {
-    case AxisState::kIdle: return "idle";
-    case AxisState::kEnabling: return "enabling";
-    case AxisState::kHoming: return "homing";
-    case AxisState::kReady: return "ready";
-    case AxisState::kRunning: return "running";
-    case AxisState::kStopping: return "stopping";
-    case AxisState::kLocked: break;
+    case AxisState::kIdle:
+      return "idle";
+    case AxisState::kEnabling:
+      return "enabling";
+    case AxisState::kHoming:
+      return "homing";
+    case AxisState::kReady:
+      return "ready";
+    case AxisState::kRunning:
+      return "running";
+    case AxisState::kStopping:
+      return "stopping";
+    case AxisState::kLocked:
+      break;
   }
   return "locked by an alarm";
 }
@@ -51,8 +58,8 @@ AxisController::AxisController(Drive& drive, const AxisSettings& settings)
   require(s.counts_per_turn >= 1000, "counts_per_turn", s.counts_per_turn, "at least 1000");
   require(s.limits.rate_radps > 0 && s.limits.accel_radps2 > 0 && s.limits.jerk_radps3 > 0, "limits",
           std::min({s.limits.rate_radps, s.limits.accel_radps2, s.limits.jerk_radps3}), "positive");
-  require(s.limits.rate_radps * s.counts_per_turn < 2e9 * 2 * std::numbers::pi, "counts_per_turn", s.counts_per_turn,
-          "small enough for 32-bit rates");
+  require(s.limits.rate_radps * s.counts_per_turn < 2e9 * 2 * std::numbers::pi, "counts_per_turn",
+          s.counts_per_turn, "small enough for 32-bit rates");
   require(s.max_following_error_rad > 0, "max_following_error_rad", s.max_following_error_rad, "positive");
   require(s.max_missed_exchanges >= 0, "max_missed_exchanges", s.max_missed_exchanges, "zero or more");
   require(s.max_cycle_gap_s >= s.control_period_s, "max_cycle_gap_s", s.max_cycle_gap_s,
@@ -72,13 +79,15 @@ AxisController::~AxisController() {
 }
 
 void AxisController::enable() {
-  if (status_.state != AxisState::kIdle) refuse("enable", fmt::format("the axis is {}", name_of(status_.state)));
+  if (status_.state != AxisState::kIdle)
+    refuse("enable", fmt::format("the axis is {}", name_of(status_.state)));
   wanted_mode_ = settings_.homing ? DriveMode::kHoming : DriveMode::kCyclicPosition;
   become(AxisState::kEnabling);
 }
 
 void AxisController::start(const RotationProfile& profile, std::int64_t start_utime) {
-  if (status_.state != AxisState::kReady) refuse("start", fmt::format("the axis is {}", name_of(status_.state)));
+  if (status_.state != AxisState::kReady)
+    refuse("start", fmt::format("the axis is {}", name_of(status_.state)));
   if (const auto excess = exceeds(settings_.limits, profile)) refuse("start", excess->sentence());
   profile_ = profile;
   clock_ = {};
@@ -89,13 +98,15 @@ void AxisController::start(const RotationProfile& profile, std::int64_t start_ut
 }
 
 void AxisController::hold() {
-  if (status_.state != AxisState::kRunning) refuse("hold", fmt::format("the axis is {}", name_of(status_.state)));
+  if (status_.state != AxisState::kRunning)
+    refuse("hold", fmt::format("the axis is {}", name_of(status_.state)));
   hold_wanted_ = true;
   resume_wanted_ = false;
 }
 
 void AxisController::resume() {
-  if (status_.state != AxisState::kRunning) refuse("resume", fmt::format("the axis is {}", name_of(status_.state)));
+  if (status_.state != AxisState::kRunning)
+    refuse("resume", fmt::format("the axis is {}", name_of(status_.state)));
   resume_wanted_ = true;
   hold_wanted_ = false;
 }
@@ -114,7 +125,9 @@ void AxisController::stop() {
   if (status_.state != AxisState::kIdle && status_.state != AxisState::kLocked) become(AxisState::kStopping);
 }
 
-void AxisController::emergency_stop(std::string_view reason) { trip(Alarm::kEmergencyStop, std::string(reason)); }
+void AxisController::emergency_stop(std::string_view reason) {
+  trip(Alarm::kEmergencyStop, std::string(reason));
+}
 
 const AxisStatus& AxisController::cycle(std::int64_t utime) {
   // 1. Was the deadline kept, and what should be true now?
@@ -123,7 +136,8 @@ const AxisStatus& AxisController::cycle(std::int64_t utime) {
                                              utime - status_.utime, 1e6 * settings_.max_cycle_gap_s));
   cycled_ = true;
   status_.utime = utime;
-  status_.setpoint_rad = target_.angle_rad + target_.rate_radps * 1e-6 * static_cast<double>(utime - target_.utime);
+  status_.setpoint_rad =
+      target_.angle_rad + target_.rate_radps * 1e-6 * static_cast<double>(utime - target_.utime);
   status_.profile_s = target_.profile_s;
   status_.phase = target_.phase;
   // 2. Where to next?
@@ -145,7 +159,9 @@ bool AxisController::in_operation() const {
          status_.state == AxisState::kReady || status_.state == AxisState::kRunning;
 }
 
-double AxisController::in_state_s() const { return 1e-6 * static_cast<double>(status_.utime - state_since_utime_); }
+double AxisController::in_state_s() const {
+  return 1e-6 * static_cast<double>(status_.utime - state_since_utime_);
+}
 
 bool AxisController::deadline_kept(std::int64_t utime) {
   if (!cycled_) {
@@ -192,8 +208,9 @@ void AxisController::follow_hold_requests(double t_s) {
 }
 
 DriveCommand AxisController::next_command() {
-  DriveCommand command{.mode = wanted_mode_,
-                       .target_position = static_cast<std::int32_t>(static_cast<std::uint32_t>(position_counts_))};
+  DriveCommand command{
+      .mode = wanted_mode_,
+      .target_position = static_cast<std::int32_t>(static_cast<std::uint32_t>(position_counts_))};
   switch (status_.state) {
     case AxisState::kIdle:
       if (reset_steps_left_ > 0) --reset_steps_left_;
@@ -202,7 +219,9 @@ DriveCommand AxisController::next_command() {
     case AxisState::kEnabling:
       if (!settings_.check_mode && heard_) command.controlword = towards_operation(drive_state_);
       break;
-    case AxisState::kHoming: command.controlword = controlword::kHomingStart; break;
+    case AxisState::kHoming:
+      command.controlword = controlword::kHomingStart;
+      break;
     case AxisState::kReady:
     case AxisState::kRunning: {
       const std::int64_t counts = std::llround(target_.angle_rad * counts_per_rad_);
@@ -215,7 +234,9 @@ DriveCommand AxisController::next_command() {
       command.controlword =
           in_state_s() < settings_.stop_timeout_s ? controlword::kQuickStop : controlword::kDisableVoltage;
       break;
-    case AxisState::kLocked: command.controlword = controlword::kDisableVoltage; break;
+    case AxisState::kLocked:
+      command.controlword = controlword::kDisableVoltage;
+      break;
   }
   return command;
 }
@@ -230,7 +251,8 @@ std::optional<DriveFeedback> AxisController::exchange(DriveCommand command) {
     return std::nullopt;
   }
   if (feedback.sequence != command.sequence) {
-    miss(Alarm::kWrongEcho, fmt::format("sequence {} was sent and {} came back", command.sequence, feedback.sequence));
+    miss(Alarm::kWrongEcho,
+         fmt::format("sequence {} was sent and {} came back", command.sequence, feedback.sequence));
     return std::nullopt;
   }
   return feedback;
@@ -294,15 +316,16 @@ void AxisController::supervise(const DriveFeedback& feedback) {
                                         std::abs(status_.measured_rate_radps), settings_.limits.rate_radps));
   if (std::abs(status_.following_error_rad) > settings_.max_following_error_rad)
     trip(Alarm::kFollowingError,
-         fmt::format("{:.4g} rad at setpoint {:.6g} rad, {:.4g} rad are allowed{}", status_.following_error_rad,
-                     status_.setpoint_rad, settings_.max_following_error_rad,
+         fmt::format("{:.4g} rad at setpoint {:.6g} rad, {:.4g} rad are allowed{}",
+                     status_.following_error_rad, status_.setpoint_rad, settings_.max_following_error_rad,
                      status_.torque_limited ? "; the drive is at its torque limit" : ""));
   if (status_.state == AxisState::kEnabling) return;
   if (drive_state_ != DriveState::kOperationEnabled)
     trip(Alarm::kDriveLeftOperation, fmt::format("it is in state {}", name_of(drive_state_)));
   if (drive_mode_ != wanted_mode_)
-    trip(Alarm::kDriveLeftOperation, fmt::format("mode {} was set and it is in mode {}",
-                                                 static_cast<int>(wanted_mode_), static_cast<int>(drive_mode_)));
+    trip(Alarm::kDriveLeftOperation,
+         fmt::format("mode {} was set and it is in mode {}", static_cast<int>(wanted_mode_),
+                     static_cast<int>(drive_mode_)));
 }
 
 void AxisController::next_state(const std::optional<DriveFeedback>& feedback) {
@@ -316,8 +339,9 @@ void AxisController::next_state(const std::optional<DriveFeedback>& feedback) {
         settle_target_here();
         become(wanted_mode_ == DriveMode::kHoming ? AxisState::kHoming : AxisState::kReady);
       } else if (in_state_s() > settings_.enable_timeout_s) {
-        trip(Alarm::kEnableTimeout, fmt::format("after {} s it is in state {}, mode {}", settings_.enable_timeout_s,
-                                                name_of(drive_state_), static_cast<int>(drive_mode_)));
+        trip(Alarm::kEnableTimeout,
+             fmt::format("after {} s it is in state {}, mode {}", settings_.enable_timeout_s,
+                         name_of(drive_state_), static_cast<int>(drive_mode_)));
       }
       break;
     case AxisState::kHoming: {
@@ -344,7 +368,8 @@ void AxisController::next_state(const std::optional<DriveFeedback>& feedback) {
       break;
     case AxisState::kIdle:
     case AxisState::kReady:
-    case AxisState::kLocked: break;
+    case AxisState::kLocked:
+      break;
   }
 }
 

@@ -1,4 +1,5 @@
-// CiA 402 (IEC 61800-7-201) device control: states, statusword, controlword, and the drive's side of the machine.
+// CiA 402 (IEC 61800-7-201) device control: states, statusword, controlword, and the drive's side of the
+// machine.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -6,8 +7,14 @@
 namespace waverig::motion {
 
 enum class DriveState {
-  kNotReady, kSwitchOnDisabled, kReadyToSwitchOn, kSwitchedOn, kOperationEnabled, kQuickStopActive,
-  kFaultReaction, kFault
+  kNotReady,
+  kSwitchOnDisabled,
+  kReadyToSwitchOn,
+  kSwitchedOn,
+  kOperationEnabled,
+  kQuickStopActive,
+  kFaultReaction,
+  kFault
 };
 
 std::string_view name_of(DriveState state);
@@ -25,8 +32,8 @@ inline constexpr std::uint16_t kFaultReset = 0x80;   // acts on the rising edge
 namespace statusword {
 inline constexpr std::uint16_t kVoltageEnabled = 1 << 4;
 inline constexpr std::uint16_t kTargetReached = 1 << 10;
-inline constexpr std::uint16_t kInternalLimit = 1 << 11;   // torque or rate is held at a limit
-inline constexpr std::uint16_t kFollows = 1 << 12;         // cyclic modes: the drive follows the command value
+inline constexpr std::uint16_t kInternalLimit = 1 << 11;  // torque or rate is held at a limit
+inline constexpr std::uint16_t kFollows = 1 << 12;        // cyclic modes: the drive follows the command value
 inline constexpr std::uint16_t kHomingAttained = 1 << 12;  // homing mode
 inline constexpr std::uint16_t kHomingError = 1 << 13;
 }  // namespace statusword

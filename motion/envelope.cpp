@@ -13,10 +13,14 @@ using std::numbers::pi;
 
 std::string_view name_of(EnvelopeReason reason) {
   switch (reason) {
-    case EnvelopeReason::kBeyondRig: return "beyond the rig";
-    case EnvelopeReason::kBreaks: return "breaks";
-    case EnvelopeReason::kClips: return "clips";
-    case EnvelopeReason::kBelowNoise: break;
+    case EnvelopeReason::kBeyondRig:
+      return "beyond the rig";
+    case EnvelopeReason::kBreaks:
+      return "breaks";
+    case EnvelopeReason::kClips:
+      return "clips";
+    case EnvelopeReason::kBelowNoise:
+      break;
   }
   return "below noise";
 }
@@ -36,8 +40,8 @@ double height_sigma_bound_m(double period_s, double noise_mps2_sqrtHz) {
 std::vector<Judgement> judge(double period_s, double height_m, int ramp_periods, const EnvelopeSettings& s) {
   std::vector<Judgement> judgements;
   const auto say = [&](EnvelopeReason reason, Verdict verdict, const std::string& what) {
-    judgements.push_back({reason, verdict,
-                          fmt::format("{} s, {} m: {}: {}", period_s, height_m, name_of(reason), what)});
+    judgements.push_back(
+        {reason, verdict, fmt::format("{} s, {} m: {}: {}", period_s, height_m, name_of(reason), what)});
   };
   if (!(std::isfinite(period_s) && period_s > 0 && std::isfinite(height_m) && height_m > 0)) {
     say(EnvelopeReason::kBeyondRig, Verdict::kRefuse, "period and height must be positive");
@@ -54,8 +58,8 @@ std::vector<Judgement> judge(double period_s, double height_m, int ramp_periods,
     say(EnvelopeReason::kBeyondRig, Verdict::kRefuse, excess->sentence());
   if (s.max_centripetal_mps2 > 0 && peak_mps2 > s.max_centripetal_mps2)
     say(EnvelopeReason::kBeyondRig, Verdict::kRefuse,
-        fmt::format("the gondola's acceleration of {:.4g} m/s^2 is more than the {:.4g} m/s^2 it bears", peak_mps2,
-                    s.max_centripetal_mps2));
+        fmt::format("the gondola's acceleration of {:.4g} m/s^2 is more than the {:.4g} m/s^2 it bears",
+                    peak_mps2, s.max_centripetal_mps2));
 
   const double length_m = deep_water_length_m(period_s);
   if (height_m > kBreakingSteepness * length_m)
@@ -66,14 +70,15 @@ std::vector<Judgement> judge(double period_s, double height_m, int ramp_periods,
   if (s.sensor_range_mps2 > 0 && peak_mps2 + kStandardGravity > s.sensor_range_mps2)
     say(EnvelopeReason::kClips, Verdict::kRefuse,
         fmt::format("the sensor feels up to {:.3g} g and clips at {:.3g} g",
-                    (peak_mps2 + kStandardGravity) / kStandardGravity, s.sensor_range_mps2 / kStandardGravity));
+                    (peak_mps2 + kStandardGravity) / kStandardGravity,
+                    s.sensor_range_mps2 / kStandardGravity));
 
   const double sigma_m = height_sigma_bound_m(period_s, s.noise_mps2_sqrtHz);
   if (sigma_m > s.noise_warn_fraction * height_m)
     say(EnvelopeReason::kBelowNoise,
         sigma_m > s.noise_refuse_fraction * height_m ? Verdict::kRefuse : Verdict::kWarn,
-        fmt::format("sensor noise alone scatters a single wave's height by at least {:.2g} m, {:.0f} % of it", sigma_m,
-                    100 * sigma_m / height_m));
+        fmt::format("sensor noise alone scatters a single wave's height by at least {:.2g} m, {:.0f} % of it",
+                    sigma_m, 100 * sigma_m / height_m));
   if (peak_mps2 < s.drift_mps2)
     say(EnvelopeReason::kBelowNoise, Verdict::kWarn,
         fmt::format("the peak acceleration of {:.2g} mg is below the sensor's drift of {:.2g} mg",

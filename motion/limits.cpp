@@ -8,10 +8,13 @@ namespace waverig::motion {
 
 std::string LimitExcess::sentence() const {
   switch (kind) {
-    case LimitKind::kRate: return fmt::format("angular rate {:.4g} rad/s is beyond the axis limit {:.4g} rad/s", value, limit);
+    case LimitKind::kRate:
+      return fmt::format("angular rate {:.4g} rad/s is beyond the axis limit {:.4g} rad/s", value, limit);
     case LimitKind::kAccel:
-      return fmt::format("angular acceleration {:.4g} rad/s^2 is beyond the axis limit {:.4g} rad/s^2", value, limit);
-    case LimitKind::kJerk: break;
+      return fmt::format("angular acceleration {:.4g} rad/s^2 is beyond the axis limit {:.4g} rad/s^2", value,
+                         limit);
+    case LimitKind::kJerk:
+      break;
   }
   return fmt::format("angular jerk {:.4g} rad/s^3 is beyond the axis limit {:.4g} rad/s^3", value, limit);
 }

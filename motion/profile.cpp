@@ -17,19 +17,24 @@ void require(bool good, const char* key, double value, const char* expected) {
   if (!good) throw UserError(fmt::format("profile: {} = {} is not {}", key, value, expected));
 }
 
-// The modulation sin x - sin(2x)/2 begins and ends a cycle with zero value and slope, has mean zero and this peak.
+// The modulation sin x - sin(2x)/2 begins and ends a cycle with zero value and slope, has mean zero and this
+// peak.
 const double kModulationPeak = 0.75 * std::numbers::sqrt3;
 
 }  // namespace
 
 RotationProfile::RotationProfile(const ProfileSettings& settings) : settings_(settings) {
   const auto& s = settings_;
-  require(std::isfinite(s.period_s) && s.period_s > 0, "period_s", s.period_s, "a positive number of seconds");
-  require(std::isfinite(s.steady_s) && s.steady_s > 0 && s.steady_s / s.period_s < 1e6, "steady_s", s.steady_s,
-          "a positive number of seconds below a million periods");
-  require(s.ramp_periods >= 1 && s.ramp_periods <= 1000, "ramp_periods", s.ramp_periods, "between 1 and 1000");
-  require(std::isfinite(s.rest_before_s) && s.rest_before_s >= 0, "rest_before_s", s.rest_before_s, "zero or more");
-  require(std::isfinite(s.rest_after_s) && s.rest_after_s >= 0, "rest_after_s", s.rest_after_s, "zero or more");
+  require(std::isfinite(s.period_s) && s.period_s > 0, "period_s", s.period_s,
+          "a positive number of seconds");
+  require(std::isfinite(s.steady_s) && s.steady_s > 0 && s.steady_s / s.period_s < 1e6, "steady_s",
+          s.steady_s, "a positive number of seconds below a million periods");
+  require(s.ramp_periods >= 1 && s.ramp_periods <= 1000, "ramp_periods", s.ramp_periods,
+          "between 1 and 1000");
+  require(std::isfinite(s.rest_before_s) && s.rest_before_s >= 0, "rest_before_s", s.rest_before_s,
+          "zero or more");
+  require(std::isfinite(s.rest_after_s) && s.rest_after_s >= 0, "rest_after_s", s.rest_after_s,
+          "zero or more");
   require(s.direction == 1 || s.direction == -1, "direction", s.direction, "+1 or -1");
   require(s.modulation_cycles >= 0, "modulation_cycles", s.modulation_cycles, "zero or more");
   require(s.rate_modulation >= 0 && s.rate_modulation <= 0.5, "rate_modulation", s.rate_modulation,
@@ -46,7 +51,8 @@ RotationProfile::RotationProfile(const ProfileSettings& settings) : settings_(se
   end_rad_ = steady_end_rad_ + ramp(ramp_s_, end_rate_radps_).angle_rad;
 }
 
-// Raised cosine of the rate from zero: w(tau) = w (1 - cos(pi tau / Tr)) / 2, and its integral and derivatives.
+// Raised cosine of the rate from zero: w(tau) = w (1 - cos(pi tau / Tr)) / 2, and its integral and
+// derivatives.
 ProfilePoint RotationProfile::ramp(double tau_s, double rate_radps) const {
   const double k = pi / ramp_s_;
   const double sine = std::sin(k * tau_s), cosine = std::cos(k * tau_s);
@@ -103,7 +109,8 @@ ProfilePoint RotationProfile::at(double t_s) const {
 ProfilePeaks RotationProfile::peaks() const {
   const double rate = std::abs(rate_radps_), ramp_rate = std::max(rate, std::abs(end_rate_radps_));
   const double k = pi / ramp_s_;
-  ProfilePeaks peaks{.rate_radps = ramp_rate, .accel_radps2 = 0.5 * ramp_rate * k, .jerk_radps3 = 0.5 * ramp_rate * k * k};
+  ProfilePeaks peaks{
+      .rate_radps = ramp_rate, .accel_radps2 = 0.5 * ramp_rate * k, .jerk_radps3 = 0.5 * ramp_rate * k * k};
   if (settings_.modulation_cycles == 0 && settings_.rate_drift == 0) return peaks;
 
   const double drift = 0.5 * rate * std::abs(settings_.rate_drift), k_drift = pi / steady_s_;

@@ -8,10 +8,10 @@
 namespace waverig::motion {
 
 struct ProfileSettings {
-  double period_s = 6;         // of the wave: one turn of the arm
-  double steady_s = 300;       // rounded up to whole periods
-  int ramp_periods = 2;        // of each ramp, at least 1
-  double rest_before_s = 10;   // at rest the estimator can learn its gyro bias
+  double period_s = 6;        // of the wave: one turn of the arm
+  double steady_s = 300;      // rounded up to whole periods
+  int ramp_periods = 2;       // of each ramp, at least 1
+  double rest_before_s = 10;  // at rest the estimator can learn its gyro bias
   double rest_after_s = 2;
   int direction = 1;           // +1 lifts the sensor first, -1 turns the other way
   double rate_modulation = 0;  // relative depth, of the steady part, mean zero

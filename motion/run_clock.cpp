@@ -54,12 +54,13 @@ ProfilePoint eased(const RotationProfile& profile, const RunClock::Reading& r) {
   const double rate = p.rate_radps, accel = p.accel_radps2;
   p.rate_radps = rate * r.speed;
   p.accel_radps2 = accel * r.speed * r.speed + rate * r.speed_1ps;
-  p.jerk_radps3 = p.jerk_radps3 * r.speed * r.speed * r.speed + 3 * accel * r.speed * r.speed_1ps + rate * r.speed_1ps2;
+  p.jerk_radps3 =
+      p.jerk_radps3 * r.speed * r.speed * r.speed + 3 * accel * r.speed * r.speed_1ps + rate * r.speed_1ps2;
   return p;
 }
 
-std::optional<double> ease_s_within(const AxisLimits& limits, const RotationProfile& profile, double profile_s,
-                                    bool resuming) {
+std::optional<double> ease_s_within(const AxisLimits& limits, const RotationProfile& profile,
+                                    double profile_s, bool resuming) {
   constexpr int kPoints = 48;
   constexpr double kMargin = 0.97;  // for what lies between the points; the rate never grows by easing
   const AxisLimits inner{limits.rate_radps, kMargin * limits.accel_radps2, kMargin * limits.jerk_radps3};

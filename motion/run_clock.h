@@ -13,7 +13,7 @@ class RunClock {
 
   struct Reading {
     double profile_s = 0;
-    double speed = 1;         // d profile / dt, and its derivatives
+    double speed = 1;  // d profile / dt, and its derivatives
     double speed_1ps = 0;
     double speed_1ps2 = 0;
   };
@@ -28,7 +28,7 @@ class RunClock {
 
  private:
   State state_ = State::kRunning;
-  double begin_s_ = 0;          // of the state
+  double begin_s_ = 0;  // of the state
   double begin_profile_s_ = 0;
   double ease_s_ = 0;
 };
@@ -38,7 +38,7 @@ ProfilePoint eased(const RotationProfile& profile, const RunClock::Reading& read
 
 // The shortest easing out of (or, with resuming, into) the profile at profile_s that stays inside the limits;
 // nothing where none up to a minute does (in a ramp that already needs them whole).
-std::optional<double> ease_s_within(const AxisLimits& limits, const RotationProfile& profile, double profile_s,
-                                    bool resuming);
+std::optional<double> ease_s_within(const AxisLimits& limits, const RotationProfile& profile,
+                                    double profile_s, bool resuming);
 
 }  // namespace waverig::motion

@@ -21,7 +21,8 @@ std::optional<LimitExcess> SetpointGuard::check(std::int64_t utime, double angle
   std::array<double, 3> derivative{};
   for (std::size_t k = 1; k < static_cast<std::size_t>(count_); ++k) {
     for (std::size_t i = 0; i + k < static_cast<std::size_t>(count_); ++i)
-      difference[i] = static_cast<double>(k) * (difference[i] - difference[i + 1]) / (1e-6 * static_cast<double>(utime_[i] - utime_[i + k]));
+      difference[i] = static_cast<double>(k) * (difference[i] - difference[i + 1]) /
+                      (1e-6 * static_cast<double>(utime_[i] - utime_[i + k]));
     derivative[k - 1] = difference[0];
   }
   // Rounding of the angles grows with each difference.

@@ -1,5 +1,5 @@
-// Watches the stream of setpoints itself, whatever made it: rate, acceleration and jerk by divided differences,
-// which for any times never exceed the derivative's largest magnitude between them.
+// Watches the stream of setpoints itself, whatever made it: rate, acceleration and jerk by divided
+// differences, which for any times never exceed the derivative's largest magnitude between them.
 #pragma once
 #include <array>
 #include <cstdint>

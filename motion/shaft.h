@@ -4,7 +4,7 @@
 namespace waverig::motion {
 
 struct ShaftState {
-  double angle_rad = 0;      // at the arm, after the gear; 0 = arm horizontal, growing lifts the sensor first
+  double angle_rad = 0;  // at the arm, after the gear; 0 = arm horizontal, growing lifts the sensor first
   double rate_radps = 0;
   double accel_radps2 = 0;
 };

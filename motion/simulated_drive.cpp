@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kStandstill_radps = 2e-4;
-constexpr double kStopGrace_s = 0.5;         // after the quick-stop ramp the brake takes over in any case
+constexpr double kStopGrace_s = 0.5;          // after the quick-stop ramp the brake takes over in any case
 constexpr double kReferenceCorrection = 0.2;  // part of the position mismatch taken back in one segment
 
 constexpr std::uint16_t kErrorWatchdog = 0x8130, kErrorFollowing = 0x8611;
@@ -114,7 +114,8 @@ DriveFeedback SimulatedDrive::process(const DriveCommand& command) {
   std::uint16_t word = bits_of(state);
   if (limited_) word |= statusword::kInternalLimit;
   if (mode_ == DriveMode::kHoming && homed_) word |= statusword::kHomingAttained | statusword::kTargetReached;
-  if (mode_ == DriveMode::kCyclicPosition && state == DriveState::kOperationEnabled) word |= statusword::kFollows;
+  if (mode_ == DriveMode::kCyclicPosition && state == DriveState::kOperationEnabled)
+    word |= statusword::kFollows;
   const double rate_counts = std::clamp(observer_.rate_radps * counts_per_rad_, -2147483647.0, 2147483647.0);
   const double permille = std::clamp(1e3 * torque_Nm_ / settings_.rated_torque_Nm, -32767.0, 32767.0);
   return {.utime = utime(),
@@ -127,9 +128,9 @@ DriveFeedback SimulatedDrive::process(const DriveCommand& command) {
           .error_code = error_code_};
 }
 
-// Cyclic synchronous position: be at target when the interpolation time is over, with target_velocity (used as
-// feed-forward, object 60B1). The rate runs straight to its end; what the position then lacks is made up slowly,
-// so that the counts' steps do not shake the arm.
+// Cyclic synchronous position: be at target when the interpolation time is over, with target_velocity (used
+// as feed-forward, object 60B1). The rate runs straight to its end; what the position then lacks is made up
+// slowly, so that the counts' steps do not shake the arm.
 void SimulatedDrive::take_target(const DriveCommand& command) {
   const std::int64_t here = encoder_counts();
   const auto difference = static_cast<std::int32_t>(static_cast<std::uint32_t>(command.target_position) -
@@ -179,8 +180,8 @@ void SimulatedDrive::step_homing_reference(double dt_s) {
   const double to_go_rad = home_distance_rad();
   // Braking parabola, run into a proportional approach near the end.
   const double brake_radps = std::sqrt(1.8 * settings_.homing_radps2 * std::abs(to_go_rad));
-  const double want = std::copysign(
-      std::min({settings_.homing_rate_radps, brake_radps, 3 * std::abs(to_go_rad)}), to_go_rad);
+  const double want =
+      std::copysign(std::min({settings_.homing_rate_radps, brake_radps, 3 * std::abs(to_go_rad)}), to_go_rad);
   const double step = settings_.homing_radps2 * dt_s;
   const double change = std::clamp(want - r.rate_radps, -step, step);
   r.accel_radps2 = change / dt_s;
@@ -200,7 +201,8 @@ void SimulatedDrive::step_stop_reference(double dt_s) {
 // All at the begin of the step but the acceleration, which is the step's own.
 double SimulatedDrive::loop_torque_Nm(const Reference& now, double encoder_rad, double dt_s) {
   const auto& s = settings_;
-  // Han 2009, "From PID to active disturbance rejection control": linear observer, all poles at -observer_radps.
+  // Han 2009, "From PID to active disturbance rejection control": linear observer, all poles at
+  // -observer_radps.
   auto& o = observer_;
   const double w = s.observer_radps, error = encoder_rad + 0.5 * rad_per_count_ - o.angle_rad;
   o.angle_rad += 3 * w * error * dt_s;
@@ -210,7 +212,8 @@ double SimulatedDrive::loop_torque_Nm(const Reference& now, double encoder_rad, 
   const double rate_radps = now.rate_radps + segment_.correction_radps + faults.extra_rate_radps +
                             s.position_gain_1ps * (now.angle_rad - encoder_rad);
   const double wanted =
-      s.inertia_kgm2 * (reference_.accel_radps2 + s.rate_gain_1ps * (rate_radps - o.rate_radps) - o.disturbance_radps2);
+      s.inertia_kgm2 *
+      (reference_.accel_radps2 + s.rate_gain_1ps * (rate_radps - o.rate_radps) - o.disturbance_radps2);
   const double limit = s.torque_limit_ratio * s.rated_torque_Nm;
   limited_ = std::abs(wanted) > limit;
   const double torque = std::clamp(wanted, -limit, limit);
@@ -226,7 +229,8 @@ void SimulatedDrive::step_shaft(double torque_Nm, double dry_friction_Nm, double
   const double turns = shaft_.angle_rad / kTurn, old_rate = shaft_.rate_radps;
   double applied = torque_Nm - s.viscous_friction_Nms * old_rate;
   if (s.unbalance_Nm != 0) applied -= s.unbalance_Nm * sin_turns(turns + 0.25);
-  if (s.cogging_Nm != 0) applied += s.cogging_Nm * sin_turns(turns * s.cogging_per_turn + cogging_phase_turns_);
+  if (s.cogging_Nm != 0)
+    applied += s.cogging_Nm * sin_turns(turns * s.cogging_per_turn + cogging_phase_turns_);
 
   const bool holds = std::abs(applied) <= dry_friction_Nm;
   double rate = old_rate;
@@ -258,7 +262,8 @@ void SimulatedDrive::step(double dt_s) {
     }
     torque_Nm_ = loop_torque_Nm(now, encoder, dt_s);
     if (silence_s_ > settings_.watchdog_s) raise_fault(kErrorWatchdog);
-    if (std::abs(reference_.angle_rad - encoder) > settings_.following_window_rad) raise_fault(kErrorFollowing);
+    if (std::abs(reference_.angle_rad - encoder) > settings_.following_window_rad)
+      raise_fault(kErrorFollowing);
   } else if (state == DriveState::kQuickStopActive || state == DriveState::kFaultReaction) {
     segment_ = {};
     step_stop_reference(dt_s);
