@@ -18,7 +18,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"motion", {"motion/kinematics", "lcmtypes"}},
     {"estimator", {"motion/kinematics", "lcmtypes"}},
     {"estimator/evaluation", {"estimator", "motion/kinematics", "lcmtypes"}},
-    {"render", {"estimator/evaluation", "estimator", "motion/kinematics"}},
+    {"render", {"estimator/evaluation", "estimator", "motion/kinematics", "lcmtypes"}},
     {"rig", {"render", "estimator/evaluation", "estimator", "motion", "motion/kinematics", "lcmtypes"}},
 };
 
