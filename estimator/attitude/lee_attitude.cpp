@@ -32,18 +32,19 @@ Vector3d levelled(const Vector3d& f_B, double roll, double pitch) {
 }
 
 const Quaterniond& LeeAttitude::update(const Vector3d& f_B, const Vector3d& w_B, double dt_s) {
-  // Variance of a quaternion element is a quarter of that of its angle.
-  const double R = 0.25 * settings_.accel_angle_sigma_rad * settings_.accel_angle_sigma_rad;
   Euler rest = rest_attitude(f_B, settings_.gravity_mps2);
   if (!started_) {
     started_ = true;
     q_ = quaternion_of(rest);
-    P_ = R * Eigen::Matrix4d::Identity();
     return q_;
   }
-  // Predict, eq. (6). White rate noise of one-sided density d walks by d^2 dt / 2.
+  // Both variances are the data sheet's: white noise of one-sided density d has variance d^2 / (2 dt) per sample and,
+  // integrated, walks by d^2 dt / 2; a quaternion element has a quarter of its angle's variance.
+  const double angle_noise = settings_.accel_noise_mps2_rthz / settings_.gravity_mps2;
+  const double R = 0.25 * angle_noise * angle_noise / (2 * dt_s);
+  const double Q = 0.25 * settings_.gyro_noise_radps_rthz * settings_.gyro_noise_radps_rthz * dt_s / 2;
+  // Predict, eq. (6).
   const Eigen::Matrix4d F = Eigen::Matrix4d::Identity() + 0.5 * dt_s * omega_matrix(w_B);
-  const double Q = 0.25 * 0.5 * settings_.gyro_noise_radps_rthz * settings_.gyro_noise_radps_rthz * dt_s;
   Eigen::Vector4d q = F * coefficients(q_);
   P_ = F * P_ * F.transpose();
   P_.diagonal().array() += Q;

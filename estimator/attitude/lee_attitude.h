@@ -13,7 +13,7 @@ namespace waverig::estimator {
 struct LeeAttitudeSettings {
   double gravity_mps2 = kStandardGravity;
   double gyro_noise_radps_rthz = 0.025 * kDegree;  // one-sided density of the data sheet
-  double accel_angle_sigma_rad = 0.05;             // of eqs (3), (4) per sample while waves shake the sensor
+  double accel_noise_mps2_rthz = 350e-6 * kStandardGravity;  // one-sided density of the data sheet
 };
 
 // Lee 2014, eqs (3), (4): roll and pitch of a sensor at rest. Angles beyond what |f| = g allows are clamped.
