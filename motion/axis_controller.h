@@ -24,7 +24,7 @@ namespace waverig::motion {
 struct AxisSettings {
   double control_period_s = 0.01;
   double counts_per_turn = 1 << 24;  // encoder counts a turn of the arm
-  AxisLimits limits;
+  AxisLimits limits{};
   double max_following_error_rad = 0.02;
   int max_missed_exchanges = 2;   // in a row, of one kind; one more raises the alarm
   double max_cycle_gap_s = 0.05;  // between two cycles

@@ -17,7 +17,7 @@ std::string_view name_of(EnvelopeReason reason);  // "beyond the rig", "breaks",
 struct EnvelopeSettings {
   double min_radius_m = 0.05;  // of the arm, adjustable in a set-up step
   double max_radius_m = 1.5;
-  AxisLimits limits;
+  AxisLimits limits{};
   double max_centripetal_mps2 = 0;     // what arm and gondola bear: w^2 r
   double sensor_range_mps2 = 0;        // full scale of one accelerometer axis, e.g. 4 g
   double noise_mps2_sqrtHz = 0;        // one-sided amplitude density
