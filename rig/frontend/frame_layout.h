@@ -32,10 +32,10 @@ struct FrameField {
   int bit_offset = 0;
   int bits = 16;                            // all within eight bytes
   ByteOrder order = ByteOrder::kBig;
-  std::string unit;                         // of value()
-  std::vector<double> polynomial;           // value = sum c_i raw^i; empty: the raw number
-  std::vector<CalibrationPoint> segments;   // or straight lines between points, raw ascending
-  std::vector<NamedLimits> limits;
+  std::string unit{};                       // of value()
+  std::vector<double> polynomial{};         // value = sum c_i raw^i; empty: the raw number
+  std::vector<CalibrationPoint> segments{}; // or straight lines between points, raw ascending
+  std::vector<NamedLimits> limits{};
 
   double value(std::int64_t raw) const;     // in unit; raw as the decoder gives it
 };

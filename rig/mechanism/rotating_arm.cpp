@@ -81,6 +81,7 @@ const BodyMotion& RotatingArm::advance(const motion::ShaftState& shaft, double d
     swing_freely(pivot_, pivot, dt_s);
   } else {   // hanging along apparent gravity
     swing_ = {std::atan2(-pivot.along_mps2, settings_.gravity_mps2 + pivot.up_mps2), 0, 0};
+    swing_.accel_radps2 = swing_accel(swing_.angle_rad, 0, pivot);
   }
   pivot_ = pivot;
   started_ = true;

@@ -1,0 +1,128 @@
+#include "estimator/calibration/accelerometer_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <filesystem>
+
+#include "lcmtypes/error.h"
+#include "motion/kinematics/random.h"
+
+namespace waverig::estimator {
+namespace {
+
+AccelerometerCalibration published_unit() {   // Lee 2014, section 2
+  AccelerometerCalibration c;
+  c.M << 1.0074, -0.0022, 0.0039, -0.0065, 0.9856, 0.0138, -0.0027, 0.0087, 0.9963;
+  c.b_mps2 = Vector3d(-0.0354, 0.0081, 0.0041) * kStandardGravity;
+  return c;
+}
+
+SensorCalibration full_calibration() {
+  SensorCalibration c;
+  c.sensor_id = "unit \"7\"";
+  c.method = "six positions";
+  c.utime = 1700000000000000;
+  c.gravity_mps2 = 9.8062;
+  c.temperature_degC = 23.5;
+  c.accelerometer = published_unit();
+  const Eigen::Matrix<double, 12, 12> A = Eigen::Matrix<double, 12, 12>::Random();
+  c.accelerometer.covariance = 1e-6 * A * A.transpose();
+  c.gyroscope = {{0.01, -0.02, 0.03}, {1e-4, 2e-4, 3e-4}};
+  c.residual_rms_mps2 = 1.0 / 3;
+  c.chi_square = 5.5;
+  c.degrees_of_freedom = 6;
+  return c;
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    calibration_from_json(text, "unit.json");
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(AccelerometerCorrection, UndoesThePublishedErrorModel) {
+  const AccelerometerCalibration c = published_unit();
+  const AccelerometerCorrection correction(c);
+  const Vector3d f(1.2, -3.4, -9.7);
+  EXPECT_LT((correction(c.M * f + c.b_mps2) - f).norm(), 1e-14);
+}
+
+TEST(AccelerometerCorrection, RefusesWhatIsNoSensor) {
+  AccelerometerCalibration c;
+  c.M.setZero();
+  EXPECT_THROW(AccelerometerCorrection{c}, UserError);
+  c = {};
+  c.b_mps2.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(AccelerometerCorrection{c}, UserError);
+}
+
+TEST(AccelerometerCalibration, StatesTheUncertaintyOfACorrectedForceAsSimulationFindsIt) {
+  AccelerometerCalibration c = published_unit();
+  c.covariance.diagonal().setConstant(1e-8);
+  c.covariance.diagonal().tail<3>().setConstant(4e-6);
+  const Vector3d f(0.5, -1, -9.6), stated = c.sigma_f_mps2(f);
+  RandomStream random(1, "errors");
+  Vector3d square = Vector3d::Zero();
+  constexpr int kRuns = 20000;
+  for (int run = 0; run < kRuns; ++run) {
+    AccelerometerCalibration wrong = c;
+    for (int r = 0; r < 3; ++r) {
+      for (int k = 0; k < 3; ++k) wrong.M(r, k) += random.gaussian(1e-4);
+      wrong.b_mps2[r] += random.gaussian(2e-3);
+    }
+    square += (AccelerometerCorrection(wrong)(c.M * f + c.b_mps2) - f).cwiseAbs2();
+  }
+  const Vector3d found = (square / kRuns).cwiseSqrt();
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i] / stated[i], 1, 0.03);
+}
+
+TEST(CalibrationFile, GivesBackEveryBitThatWasStored) {
+  const SensorCalibration c = full_calibration();
+  const auto path = std::filesystem::path(testing::TempDir()) / "waverig_calibration.json";
+  store_calibration(c, path);
+  const SensorCalibration back = load_calibration(path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(back.sensor_id, c.sensor_id);
+  EXPECT_EQ(back.utime, c.utime);
+  EXPECT_EQ(back.gravity_mps2, c.gravity_mps2);
+  EXPECT_EQ(back.temperature_degC, c.temperature_degC);
+  EXPECT_EQ(back.accelerometer.M, c.accelerometer.M);
+  EXPECT_EQ(back.accelerometer.b_mps2, c.accelerometer.b_mps2);
+  EXPECT_EQ(back.accelerometer.covariance, c.accelerometer.covariance);
+  EXPECT_EQ(back.gyroscope.offset_radps, c.gyroscope.offset_radps);
+  EXPECT_EQ(back.gyroscope.offset_sigma_radps, c.gyroscope.offset_sigma_radps);
+  EXPECT_EQ(back.residual_rms_mps2, c.residual_rms_mps2);
+  EXPECT_EQ(to_json(back), to_json(c));
+}
+
+TEST(CalibrationFile, KeepsAnUnknownTemperatureUnknown) {
+  SensorCalibration c = full_calibration();
+  c.temperature_degC = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(calibration_from_json(to_json(c), "x").temperature_degC));
+}
+
+TEST(CalibrationFile, NamesFileAndKeyOfWhatIsWrong) {
+  const std::string text = to_json(full_calibration());
+  EXPECT_EQ(complaint(text), "");
+  EXPECT_NE(complaint("{").find("unit.json: is no JSON"), std::string::npos);
+  EXPECT_NE(complaint("[1]").find("/format is missing"), std::string::npos);
+  EXPECT_NE(complaint(with(text, "\"gravity_mps2\"", "\"gravity\"")).find("/gravity_mps2 is missing"), std::string::npos);
+  EXPECT_NE(complaint(with(text, "9.8062", "\"much\"")).find("/gravity_mps2 = \"much\": expected a number"),
+            std::string::npos);
+  EXPECT_NE(complaint(with(text, "1.0074", "7.0")).find("M: expected a matrix"), std::string::npos);
+  EXPECT_NE(complaint(with(text, "1.0074,", "")).find("/accelerometer/M"), std::string::npos);
+  EXPECT_THROW(load_calibration("/nonexistent/unit.json"), UserError);
+}
+
+}  // namespace
+}  // namespace waverig::estimator
