@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "estimator/heave/realtime.h"
+#include "estimator/heave/smoothed.h"
 #include "estimator/waves/harmonic.h"
 #include "estimator/waves/lee2014.h"
 #include "lcmtypes/error.h"
@@ -23,6 +25,8 @@ struct Entry {
 constexpr std::array kMethods{
     Entry{"lee2014", make<Lee2014>},
     Entry{"harmonic", make<Harmonic>},
+    Entry{"realtime", make<Realtime>},
+    Entry{"smoothed", make<Smoothed>},
 };
 
 }  // namespace

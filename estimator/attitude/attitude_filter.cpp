@@ -8,7 +8,7 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kSaturatedRate_radps = 0.5;     // how wrong a saturated gyro may be
+constexpr double kSaturatedRate_radps = 0.5;  // how wrong a saturated gyro may be
 constexpr double kSaturatedAccel_mps2 = 10.0;
 constexpr double kStartPath_m = 1.0, kStartSpeed_mps = 1.0;
 constexpr double kSettledTilt_rad = 0.25 * kDegree;
@@ -37,7 +37,7 @@ Eigen::Matrix4d TiltChain::transition(double t, double g) {
 Eigen::Matrix4d TiltChain::predict(const AttitudeSettings& s, double dt_s) {
   const Eigen::Matrix4d F = transition(dt_s, s.gravity_mps2);
   P = F * P * F.transpose();
-  P(1, 1) += square(s.accel_noise_mps2_rthz) / 2 * dt_s;   // one-sided density to two-sided
+  P(1, 1) += square(s.accel_noise_mps2_rthz) / 2 * dt_s;  // one-sided density to two-sided
   P(2, 2) += square(s.gyro_noise_radps_rthz) / 2 * dt_s;
   P(3, 3) += square(s.gyro_bias_walk_radps_rts) * dt_s;
   return F;
@@ -52,7 +52,8 @@ Eigen::Vector4d TiltChain::update(const AttitudeSettings& s, double dt_s) {
 
 AttitudeFilter::AttitudeFilter(const AttitudeSettings& settings) : settings_(settings), chain_(settings) {}
 
-AttitudeFilter::AttitudeFilter(const AttitudeSettings& settings, const Quaterniond& q_NB, const Vector3d& gyro_bias_B)
+AttitudeFilter::AttitudeFilter(const AttitudeSettings& settings, const Quaterniond& q_NB,
+                               const Vector3d& gyro_bias_B)
     : settings_(settings), chain_(settings), knows_attitude_(true) {
   state_.q_NB = q_NB;
   state_.gyro_bias_B = gyro_bias_B;
@@ -62,14 +63,15 @@ AttitudeFilter::AttitudeFilter(const AttitudeSettings& settings, const Quaternio
 void AttitudeFilter::level(const Vector3d& f_B) {
   const Vector3d f_N = state_.q_NB * f_B;
   const Euler tilt{std::atan2(-f_N.y(), -f_N.z()), std::atan2(f_N.x(), std::hypot(f_N.y(), f_N.z())), 0};
-  if (f_N.norm() > 0.1 * settings_.gravity_mps2) state_.q_NB = (quaternion_of(tilt) * state_.q_NB).normalized();
+  if (f_N.norm() > 0.1 * settings_.gravity_mps2)
+    state_.q_NB = (quaternion_of(tilt) * state_.q_NB).normalized();
 }
 
 void AttitudeFilter::restart(const ImuSample& sample) {
   if (!knows_attitude_) level(sample.f_B);
   const double bias_variance = chain_.P(3, 3);
   chain_ = TiltChain(settings_);
-  if (started_) chain_.P(3, 3) = bias_variance;   // a gap does not unlearn the gyro's bias
+  if (started_) chain_.P(3, 3) = bias_variance;  // a gap does not unlearn the gyro's bias
   position_N_.setZero();
   velocity_N_.setZero();
   since_correction_s_ = 0;

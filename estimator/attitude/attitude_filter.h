@@ -1,14 +1,17 @@
-// AttitudeFilter: causal attitude of a body that sways about a place, from specific force and angular rate alone.
+// AttitudeFilter: causal attitude of a body that sways about a place, from specific force and angular rate
+// alone.
 //
-// Levelling by the bounded path. The levelled acceleration is integrated twice; a tilt error theta makes the path run
-// away with g theta t^2 / 2, a wave does not. The pseudo-measurement "the horizontal path is about zero", white of
-// density motion_m2s, drives per horizontal axis the chain of errors
+// Levelling by the bounded path. The levelled acceleration is integrated twice; a tilt error theta makes the
+// path run away with g theta t^2 / 2, a wave does not. The pseudo-measurement "the horizontal path is about
+// zero", white of density motion_m2s, drives per horizontal axis the chain of errors
 //
-//     dp' = dv,   dv' = g theta + n_a,   theta' = beta + n_g,   beta' = n_b            (beta: gyro bias error, rad/s)
+//     dp' = dv,   dv' = g theta + n_a,   theta' = beta + n_g,   beta' = n_b            (beta: gyro bias
+//     error, rad/s)
 //
-// so wave accelerations reach the tilt only through the third power of (corner / wave frequency), while the gyro bias
-// is learned within about half a minute. Both axes share one 4x4 covariance: the chain is the same for any heading.
-// Heading itself starts at zero and drifts: without a magnetometer N is a level frame that turns slowly.
+// so wave accelerations reach the tilt only through the third power of (corner / wave frequency), while the
+// gyro bias is learned within about half a minute. Both axes share one 4x4 covariance: the chain is the same
+// for any heading. Heading itself starts at zero and drifts: without a magnetometer N is a level frame that
+// turns slowly.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -19,24 +22,24 @@ namespace waverig::estimator {
 
 struct AttitudeSettings {
   double gravity_mps2 = kStandardGravity;
-  double gyro_noise_radps_rthz = 0.025 * kDegree;   // one-sided amplitude density; data sheet
-  double gyro_bias_sigma_radps = 0.5 * kDegree;     // at the start
-  double gyro_bias_walk_radps_rts = 2e-5;           // rad/s per sqrt(s)
+  double gyro_noise_radps_rthz = 0.025 * kDegree;            // one-sided amplitude density; data sheet
+  double gyro_bias_sigma_radps = 0.5 * kDegree;              // at the start
+  double gyro_bias_walk_radps_rts = 2e-5;                    // rad/s per sqrt(s)
   double accel_noise_mps2_rthz = 350e-6 * kStandardGravity;  // one-sided amplitude density; data sheet
-  double accel_bias_sigma_mps2 = 2e-3;              // per axis, for the stated tilt uncertainty only
-  double motion_m2s = 0.3;                          // two-sided density of the horizontal path taken as white
-  double start_tilt_sigma_rad = 0.1;                // of levelling by one sample of specific force
-  double update_interval_s = 0.1;                   // between two corrections
-  double longest_gap_s = 1.0;                       // beyond it the attitude is levelled anew
+  double accel_bias_sigma_mps2 = 2e-3;                       // per axis, for the stated tilt uncertainty only
+  double motion_m2s = 0.3;            // two-sided density of the horizontal path taken as white
+  double start_tilt_sigma_rad = 0.1;  // of levelling by one sample of specific force
+  double update_interval_s = 0.1;     // between two corrections
+  double longest_gap_s = 1.0;         // beyond it the attitude is levelled anew
 };
 
 struct AttitudeSample {
   std::int64_t utime = 0;
-  Quaterniond q_NB = Quaterniond::Identity();       // body to the level frame N
-  Vector3d gyro_bias_B = Vector3d::Zero();          // rad/s; what the gyro reads too much
-  Vector3d a_N = Vector3d::Zero();                  // m/s^2, acceleration in N, gravity removed; down positive
-  double tilt_sigma_rad = kUnknown;                 // standard uncertainty of the tilt, per horizontal axis
-  bool settled = false;                             // the tilt no longer remembers its start
+  Quaterniond q_NB = Quaterniond::Identity();  // body to the level frame N
+  Vector3d gyro_bias_B = Vector3d::Zero();     // rad/s; what the gyro reads too much
+  Vector3d a_N = Vector3d::Zero();             // m/s^2, acceleration in N, gravity removed; down positive
+  double tilt_sigma_rad = kUnknown;            // standard uncertainty of the tilt, per horizontal axis
+  bool settled = false;                        // the tilt no longer remembers its start
 };
 
 // The chain's covariance and its step, shared by filter and smoother. State (p, v, theta, beta).
@@ -44,28 +47,31 @@ struct TiltChain {
   Eigen::Matrix4d P;
   explicit TiltChain(const AttitudeSettings& settings);
   static Eigen::Matrix4d transition(double dt_s, double g);
-  Eigen::Matrix4d predict(const AttitudeSettings& settings, double dt_s);   // returns the transition
-  Eigen::Vector4d update(const AttitudeSettings& settings, double dt_s);    // returns the gain for the residual 0 - p
+  Eigen::Matrix4d predict(const AttitudeSettings& settings, double dt_s);  // returns the transition
+  Eigen::Vector4d update(const AttitudeSettings& settings,
+                         double dt_s);  // returns the gain for the residual 0 - p
 };
 
 // What one correction did: kept by the smoother.
 struct AttitudeCorrection {
   std::int64_t utime = 0;
-  Eigen::Matrix<double, 4, 2> applied = Eigen::Matrix<double, 4, 2>::Zero();   // chain states of north and east
+  Eigen::Matrix<double, 4, 2> applied =
+      Eigen::Matrix<double, 4, 2>::Zero();  // chain states of north and east
   Eigen::Matrix4d transition, predicted_P, updated_P;
-  Quaterniond q_NB = Quaterniond::Identity();                                  // after the correction
-  bool restarted = false;               // levelled anew since the correction before: no memory across
-  std::int64_t restart_utime = 0;       // when
+  Quaterniond q_NB = Quaterniond::Identity();  // after the correction
+  bool restarted = false;                      // levelled anew since the correction before: no memory across
+  std::int64_t restart_utime = 0;              // when
 };
 
 class AttitudeFilter {
  public:
   explicit AttitudeFilter(const AttitudeSettings& settings);
-  // Starts from a known attitude and bias instead of the first sample's specific force (second pass of the smoother).
+  // Starts from a known attitude and bias instead of the first sample's specific force (second pass of the
+  // smoother).
   AttitudeFilter(const AttitudeSettings& settings, const Quaterniond& q_NB, const Vector3d& gyro_bias_B);
 
-  // Samples in increasing utime, repeats and stragglers already dropped; gaps are welcome. flag::kSaturation on a
-  // sample widens the uncertainty. Never throws.
+  // Samples in increasing utime, repeats and stragglers already dropped; gaps are welcome. flag::kSaturation
+  // on a sample widens the uncertainty. Never throws.
   const AttitudeSample& update(const ImuSample& sample);
 
   // The correction made by the last update(), if it made one.
@@ -86,7 +92,8 @@ class AttitudeFilter {
   bool started_ = false, corrected_ = false, restarted_ = false, knows_attitude_ = false;
 };
 
-// The chain's tilt (rad, about north and east) as a rotation vector in N: a_N errs by g theta along its own axis.
+// The chain's tilt (rad, about north and east) as a rotation vector in N: a_N errs by g theta along its own
+// axis.
 inline Vector3d tilt_rotation_N(double theta_north, double theta_east) {
   return {theta_east, -theta_north, 0.0};
 }

@@ -8,10 +8,10 @@ namespace {
 
 using Change = Eigen::Matrix<double, 4, 2>;
 
-// The bias error of a change, carried from the heading of one node to that of another (the bias stays with the body).
+// The bias error of a change, carried from the heading of one node to that of another (the bias stays with
+// the body).
 void turn_bias(Change& change, const Quaterniond& from_q_NB, const Quaterniond& to_q_NB) {
-  const Vector3d bias_N =
-      to_q_NB * (from_q_NB.conjugate() * bias_change_N(change(3, 0), change(3, 1)));
+  const Vector3d bias_N = to_q_NB * (from_q_NB.conjugate() * bias_change_N(change(3, 0), change(3, 1)));
   change(3, 0) = bias_N.y();
   change(3, 1) = -bias_N.x();
 }
@@ -31,12 +31,12 @@ Forward run(AttitudeFilter filter, const std::vector<ImuSample>& samples) {
   return forward;
 }
 
-// Rauch, Tung, Striebel 1965, on changes instead of states: with d(k) the smoothed state less the filtered one just
-// before the correction at node k, and C(k) = P+(k) F' P-(k+1)^-1,
+// Rauch, Tung, Striebel 1965, on changes instead of states: with d(k) the smoothed state less the filtered
+// one just before the correction at node k, and C(k) = P+(k) F' P-(k+1)^-1,
 //     d(k) = applied(k) + C(k) d(k+1).
 struct Smoothed {
-  std::vector<Change> after;       // smoothed less filtered, just after the correction of each node
-  std::vector<Change> before;      // the same just before it
+  std::vector<Change> after;   // smoothed less filtered, just after the correction of each node
+  std::vector<Change> before;  // the same just before it
   std::vector<double> tilt_variance;
 };
 
@@ -66,15 +66,16 @@ void apply(const Change& change, double tilt_variance, const AttitudeSettings& s
   sample.q_NB = (quaternion_exp(tilt_rotation_N(change(2, 0), change(2, 1))) * sample.q_NB).normalized();
   sample.gyro_bias_B += sample.q_NB.conjugate() * bias_change_N(change(3, 0), change(3, 1));
   sample.a_N = sample.q_NB * f_B + Vector3d(0, 0, settings.gravity_mps2);
-  sample.tilt_sigma_rad =
-      std::hypot(std::sqrt(std::max(tilt_variance, 0.0)), settings.accel_bias_sigma_mps2 / settings.gravity_mps2);
+  sample.tilt_sigma_rad = std::hypot(std::sqrt(std::max(tilt_variance, 0.0)),
+                                     settings.accel_bias_sigma_mps2 / settings.gravity_mps2);
   sample.settled = true;
 }
 
 // Between two nodes the change runs linearly: the filter's own error there is its noise, integrated.
 void correct_samples(const std::vector<ImuSample>& imu, const std::vector<AttitudeCorrection>& nodes,
-                     const Smoothed& smoothed, const AttitudeSettings& settings, std::vector<AttitudeSample>& samples) {
-  std::size_t k = 0;   // the first node not before the sample
+                     const Smoothed& smoothed, const AttitudeSettings& settings,
+                     std::vector<AttitudeSample>& samples) {
+  std::size_t k = 0;  // the first node not before the sample
   for (std::size_t i = 0; i < samples.size(); ++i) {
     while (k < nodes.size() && nodes[k].utime < samples[i].utime) ++k;
     Change change;
@@ -102,12 +103,13 @@ void correct_samples(const std::vector<ImuSample>& imu, const std::vector<Attitu
 
 }  // namespace
 
-std::vector<AttitudeSample> smooth_attitude(const std::vector<ImuSample>& imu, const AttitudeSettings& settings) {
+std::vector<AttitudeSample> smooth_attitude(const std::vector<ImuSample>& imu,
+                                            const AttitudeSettings& settings) {
   if (imu.empty()) return {};
   AttitudeFilter filter(settings);
   for (int pass = 0;; ++pass) {
     Forward forward = run(filter, imu);
-    if (forward.nodes.empty()) return forward.samples;   // shorter than one correction
+    if (forward.nodes.empty()) return forward.samples;  // shorter than one correction
     correct_samples(imu, forward.nodes, backward(forward.nodes), settings, forward.samples);
     if (pass == 1) return forward.samples;
     filter = AttitudeFilter(settings, forward.samples.front().q_NB, forward.samples.front().gyro_bias_B);

@@ -1,4 +1,5 @@
-// Attitude of a whole record, forward and backward: the AttitudeFilter's chain with a Rauch-Tung-Striebel pass.
+// Attitude of a whole record, forward and backward: the AttitudeFilter's chain with a Rauch-Tung-Striebel
+// pass.
 #pragma once
 #include <vector>
 
@@ -7,8 +8,9 @@
 namespace waverig::estimator {
 
 // One AttitudeSample per ImuSample, same utime. Samples in increasing utime (repeats and stragglers dropped).
-// Two passes, the second starting from the first's smoothed attitude and bias, so that the start is as good as the
-// rest. Linear in time and memory; an empty record gives an empty answer.
-std::vector<AttitudeSample> smooth_attitude(const std::vector<ImuSample>& samples, const AttitudeSettings& settings);
+// Two passes, the second starting from the first's smoothed attitude and bias, so that the start is as good
+// as the rest. Linear in time and memory; an empty record gives an empty answer.
+std::vector<AttitudeSample> smooth_attitude(const std::vector<ImuSample>& samples,
+                                            const AttitudeSettings& settings);
 
 }  // namespace waverig::estimator

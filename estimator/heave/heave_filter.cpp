@@ -1,0 +1,110 @@
+#include "estimator/heave/heave_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waverig::estimator {
+namespace {
+
+constexpr double kDt = kNodeInterval_s;
+constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25,
+                 kBiasVariance_m2ps4 = 0.1;        // nothing known
+constexpr double kMeasurementVariance_m2 = 1e-10;  // the path is exact; this keeps the algebra regular
+constexpr double kSurprising = 9;                  // innovation squared over its variance
+constexpr double kCalmDown = 0.98;                 // a node
+
+Eigen::Matrix3d drift_transition() {
+  Eigen::Matrix3d F;
+  F << 1, kDt, kDt * kDt / 2, 0, 1, kDt, 0, 0, 1;
+  return F;
+}
+
+Eigen::Matrix3d toeplitz_free_start() {
+  return Eigen::Vector3d(kPathVariance_m2, kSpeedVariance_m2ps2, kBiasVariance_m2ps4).asDiagonal();
+}
+
+}  // namespace
+
+HeaveFilter::HeaveFilter(const SeaModel& model) : model_(model), z_(Eigen::VectorXd::Zero(model.order())) {
+  const int n = model.order();
+  P_.setZero(n + 3, n + 3);
+  next_P_ = P_;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) P_(i, j) = model.autocovariance_m2[std::abs(i - j)];
+  P_.bottomRightCorner<3, 3>() = toeplitz_free_start();
+}
+
+void HeaveFilter::set_model(const SeaModel& model) {
+  model_ = model;
+  surprise_ = 1;
+}
+
+void HeaveFilter::step(const PathIncrement& increment, double extra_noise_m2ps3) {
+  path_m_ += kDt * (speed_mps_ - kDt * bias_mps2_ / 2) + increment.path_m;
+  speed_mps_ += increment.speed_mps - kDt * bias_mps2_;
+  predict(model_.accel_noise_m2ps3 + extra_noise_m2ps3);
+  update();
+}
+
+void HeaveFilter::skip(int intervals) {
+  const int n = model_.order();
+  for (int i = 0; i < intervals; ++i) predict(model_.accel_noise_m2ps3);
+  P_.middleRows(n, 2).setZero();
+  P_.middleCols(n, 2).setZero();
+  P_(n, n) = kPathVariance_m2;
+  P_(n + 1, n + 1) = kSpeedVariance_m2ps2;
+  path_m_ = z_[0];
+  speed_mps_ = 0;
+}
+
+void HeaveFilter::predict(double noise_m2ps3) {
+  const int n = model_.order();
+  const Eigen::VectorXd& a = model_.ar;
+  const double z = a.dot(z_);
+  for (int i = n - 1; i > 0; --i) z_[i] = z_[i - 1];
+  z_[0] = z;
+
+  static const Eigen::Matrix3d F = drift_transition();
+  const Eigen::VectorXd Pa = P_.topLeftCorner(n, n) * a;
+  next_P_(0, 0) = a.dot(Pa) + surprise_ * model_.innovation_m2;
+  next_P_.row(0).segment(1, n - 1) = Pa.head(n - 1).transpose();
+  next_P_.col(0).segment(1, n - 1) = Pa.head(n - 1);
+  next_P_.block(1, 1, n - 1, n - 1) = P_.topLeftCorner(n - 1, n - 1);
+  next_P_.block<1, 3>(0, n).noalias() = (a.transpose() * P_.block(0, n, n, 3)) * F.transpose();
+  next_P_.block(1, n, n - 1, 3).noalias() = P_.block(0, n, n - 1, 3) * F.transpose();
+  next_P_.block(n, 0, 3, n) = next_P_.block(0, n, n, 3).transpose();
+  Eigen::Matrix3d D = F * P_.block<3, 3>(n, n) * F.transpose();
+  // White acceleration noise over one interval, integrated once and twice.
+  D(0, 0) += noise_m2ps3 * kDt * kDt * kDt / 3;
+  D(0, 1) += noise_m2ps3 * kDt * kDt / 2;
+  D(1, 0) += noise_m2ps3 * kDt * kDt / 2;
+  D(1, 1) += noise_m2ps3 * kDt;
+  D(2, 2) += model_.bias_walk_m2ps5 * kDt;
+  next_P_.block<3, 3>(n, n) = 0.5 * (D + D.transpose());
+  P_.swap(next_P_);
+}
+
+void HeaveFilter::update() {
+  const int n = model_.order();
+  const double innovation = path_m_ - z_[0];
+  const Eigen::VectorXd PH = P_.col(0) + P_.col(n);
+  const double S = PH[0] + PH[n] + kMeasurementVariance_m2;
+  const Eigen::VectorXd gain = PH / S;
+  z_ += innovation * gain.head(n);
+  path_m_ -= innovation * gain[n];
+  speed_mps_ -= innovation * gain[n + 1];
+  bias_mps2_ += innovation * gain[n + 2];
+  P_.noalias() -= gain * PH.transpose();
+  // A sea that grows faster than the model is learned anew: believe the motion first.
+  const double ratio = innovation * innovation / S;
+  surprise_ = ratio > kSurprising ? surprise_ * std::min(ratio / 3, 10.0) : 1 + kCalmDown * (surprise_ - 1);
+  surprise_ = std::min(surprise_, 1e6);
+}
+
+double HeaveFilter::variance_m2(double since_s) const {
+  const int n = model_.order();
+  const Eigen::Vector3d h(1, since_s, since_s * since_s / 2);
+  return std::max(h.dot(P_.block<3, 3>(n, n) * h), 0.0);
+}
+
+}  // namespace waverig::estimator

@@ -1,0 +1,52 @@
+// HeaveFilter: Kalman filter of heave at the nodes, under a SeaModel. Causal; a step a node.
+//
+// State: the last `order` heaves z(k) … z(k-order+1), and drift (d, d', b). Measurement: the path, the
+// acceleration's double integral, which is z(k) + d(k) exactly. Each step's drift is taken out of the path at
+// once, so that path and speed are the estimate; the older heaves in the state are fixed-lag smoothed by
+// every later measurement.
+#pragma once
+#include <Eigen/Core>
+
+#include "estimator/heave/path_integrator.h"
+#include "estimator/heave/sea_model.h"
+
+namespace waverig::estimator {
+
+class HeaveFilter {
+ public:
+  explicit HeaveFilter(const SeaModel& model);
+  void set_model(const SeaModel& model);  // of the same order
+
+  // One node interval's increment. extra_noise_m2ps3: two-sided density on top of the model's, from what the
+  // filter cannot know (attitude not settled, saturated samples).
+  void step(const PathIncrement& increment, double extra_noise_m2ps3);
+  // Node intervals without samples: the sea runs on by its model, path and speed are lost.
+  void skip(int intervals);
+
+  // At the last node plus `since_s`, given the increment from the node on.
+  double heave_m(const PathIncrement& partial, double since_s) const {
+    return path_m_ + since_s * (speed_mps_ - since_s * bias_mps2_ / 2) + partial.path_m;
+  }
+  double heave_rate_mps(const PathIncrement& partial, double since_s) const {
+    return speed_mps_ + partial.speed_mps - since_s * bias_mps2_;
+  }
+  double variance_m2(double since_s) const;
+
+  // Heave at the node `lag` intervals ago, by all measurements since. lag < order.
+  double lagged_heave_m(int lag) const { return z_[lag]; }
+  double lagged_variance_m2(int lag) const { return P_(lag, lag); }
+  int order() const { return model_.order(); }
+  double bias_mps2() const { return bias_mps2_; }
+
+ private:
+  void predict(double noise_m2ps3);
+  void update();
+
+  SeaModel model_;
+  Eigen::VectorXd z_;  // heaves, newest first
+  double path_m_ = 0, speed_mps_ = 0, bias_mps2_ = 0;
+  Eigen::MatrixXd P_, next_P_;
+  double surprise_ = 1;  // how many times the model's innovation variance the sea is found to have just now
+};
+
+}  // namespace waverig::estimator

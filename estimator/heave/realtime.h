@@ -1,0 +1,56 @@
+// `realtime`: heave, heave rate and attitude of any sea, sample by sample.
+//
+// AttitudeFilter levels the specific force; PathIntegrator integrates its vertical part twice; SeaIdentifier
+// learns the sea's spectrum from it and HeaveFilter tells drift from sea by it, at nodes half a second apart.
+// Between nodes heave is the double integral itself: gain one, no lag.
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "estimator/attitude/attitude_filter.h"
+#include "estimator/heave/disturbance.h"
+#include "estimator/heave/heave_filter.h"
+#include "estimator/heave/sea_identifier.h"
+#include "estimator/heave/wave_counter.h"
+#include "estimator/method.h"
+#include "estimator/sample_guard.h"
+
+namespace waverig::estimator {
+
+class Realtime : public Method {
+ public:
+  explicit Realtime(const MethodSettings& settings);
+  void add(const ImuSample& sample, Output& output) override;
+  void finish(Output& output) override;
+
+ private:
+  struct Held {  // a sample that waits for the fixed lag
+    HeaveSample sample;
+    PathIncrement partial;  // from the node before it
+    double since_node_s = 0, tilt_sigma_rad = 0;
+    std::int64_t node = 0;  // number of that node
+  };
+  void restart(const ImuSample& sample, double a_up_mps2, Output& output);
+  void node(const PathIncrement& increment);
+  void estimate(const Held& held, HeaveSample& sample) const;
+  void release(std::int64_t until_utime, Output& output);
+  void track_motion(const AttitudeSample& attitude);
+
+  MethodSettings settings_;
+  SampleGuard guard_;
+  AttitudeFilter attitude_;
+  PathIntegrator integrator_;
+  SeaIdentifier identifier_;
+  HeaveFilter filter_;
+  WaveCounter counter_;
+  std::deque<Held> held_;
+  std::deque<PathIncrement> intervals_;  // the newest ones, as many as the lag needs; newest last
+  std::int64_t nodes_ = 0, settled_nodes_ = 0;
+  std::int32_t pending_flags_ = 0;
+  double disturbance_m2ps3_ = 0;  // worst since the last node
+  Motion motion_;
+  bool started_ = false;
+};
+
+}  // namespace waverig::estimator

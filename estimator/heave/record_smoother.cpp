@@ -1,0 +1,145 @@
+#include "estimator/heave/record_smoother.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "estimator/heave/heave_smoother.h"
+#include "estimator/heave/path_integrator.h"
+#include "estimator/heave/sea_identifier.h"
+#include "lcmtypes/flags.h"
+
+namespace waverig::estimator {
+namespace {
+
+constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabola
+constexpr int kOrder = 48;             // of the autoregression: 24 s
+
+double square(double x) { return x * x; }
+
+// One piece without a gap, seen from the nodes.
+struct Piece {
+  std::size_t begin = 0, end = 0;  // samples
+  std::vector<PathIncrement> increments;
+  std::vector<double> disturbance_m2ps3;  // worst in each interval
+  std::vector<PathIncrement> partial;     // one a sample, from the node before it
+  std::vector<double> since_node_s;
+  std::vector<std::size_t> node;  // that node's number
+};
+
+Piece integrate(const Record& record, const std::vector<AttitudeSample>& attitude, std::size_t begin,
+                std::size_t end, double gravity_mps2) {
+  Piece piece{begin, end, {}, {}, {}, {}, {}};
+  PathIntegrator integrator(kNodeInterval_s);
+  double worst = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const ImuSample& sample = record.samples()[i];
+    const double a_up = -attitude[i].a_N.z();
+    worst = std::max(worst, disturbance_m2ps3(attitude[i], sample.flags, gravity_mps2));
+    if (i == begin) {
+      integrator.start(sample.utime, a_up);
+    } else {
+      integrator.add(sample.utime, a_up, [&](std::int64_t, const PathIncrement& whole) {
+        piece.increments.push_back(whole);
+        piece.disturbance_m2ps3.push_back(worst);
+        worst = 0;
+      });
+    }
+    piece.partial.push_back(integrator.partial());
+    piece.since_node_s.push_back(integrator.since_node_s());
+    piece.node.push_back(piece.increments.size());
+  }
+  return piece;
+}
+
+SeaModel identify(std::span<const Piece> pieces, const AttitudeSettings& attitude) {
+  SeaIdentifierSettings settings;
+  settings.order = kOrder;
+  settings.memory_s = 0;
+  settings.accel_noise_m2ps3 = square(attitude.accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
+  SeaIdentifier identifier(settings);
+  for (const Piece& piece : pieces) {
+    for (const PathIncrement& increment : piece.increments) identifier.add(increment);
+    identifier.gap();
+  }
+  return identifier.model();
+}
+
+// Heave between the nodes: the double integral from the node on, plus what brings it to the next node's
+// estimate, as a cubic in time (Hermite), so that heave and its rate agree with both.
+void interpolate(const Piece& piece, std::span<const SmoothedNode> nodes, std::span<HeaveSample> out) {
+  const double dt = kNodeInterval_s;
+  for (std::size_t i = 0; i < piece.partial.size(); ++i) {
+    const std::size_t k = piece.node[i];
+    const double t = piece.since_node_s[i], x = t / dt;
+    double heave = nodes[k].heave_m + t * nodes[k].heave_rate_mps + piece.partial[i].path_m;
+    double rate = nodes[k].heave_rate_mps + piece.partial[i].speed_mps;
+    double variance = nodes[k].variance_m2;
+    if (k + 1 < nodes.size()) {
+      const PathIncrement& whole = piece.increments[k];
+      const double p = nodes[k + 1].heave_m - nodes[k].heave_m - dt * nodes[k].heave_rate_mps - whole.path_m;
+      const double v = nodes[k + 1].heave_rate_mps - nodes[k].heave_rate_mps - whole.speed_mps;
+      heave += x * x * ((3 - 2 * x) * p + (x - 1) * dt * v);
+      rate += x * (6 * (1 - x) * p / dt + (3 * x - 2) * v);
+      variance += x * (nodes[k + 1].variance_m2 - nodes[k].variance_m2);
+    } else {
+      heave -= nodes[k].bias_mps2 * t * t / 2;
+      rate -= nodes[k].bias_mps2 * t;
+    }
+    out[i].heave_m = heave;
+    out[i].heave_rate_mps = rate;
+    out[i].heave_sigma_m = std::sqrt(variance);
+  }
+}
+
+}  // namespace
+
+void Record::add(const ImuSample& sample) {
+  const GuardVerdict verdict = guard_.check(sample);
+  if (!verdict.usable) {
+    pending_flags_ |= verdict.flags & ~flag::kGap;
+    return;
+  }
+  if (samples_.empty() || verdict.dt_s > kLongestGap_s + 2 * guard_.usual_interval_s())
+    pieces_.push_back(samples_.size());
+  samples_.push_back(sample);
+  samples_.back().flags = verdict.flags | pending_flags_;
+  if (!pieces_.empty() && pieces_.back() + 1 == samples_.size() && samples_.size() > 1)
+    samples_.back().flags |= flag::kGap;
+  pending_flags_ = 0;
+}
+
+SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor) {
+  const std::vector<ImuSample>& samples = record.samples();
+  const AttitudeSettings settings = attitude_settings(sensor);
+  SmoothedRecord smoothed;
+  smoothed.attitude = smooth_attitude(samples, settings);
+  std::vector<Piece> pieces;
+  for (std::size_t p = 0; p < record.pieces().size(); ++p) {
+    const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : samples.size();
+    pieces.push_back(integrate(record, smoothed.attitude, record.pieces()[p], end, sensor.gravity_mps2));
+  }
+  smoothed.sea = identify(pieces, settings);
+  for (const AttitudeSample& a : smoothed.attitude) {
+    const Vector3d down_B = a.q_NB.conjugate() * Vector3d::UnitZ();
+    smoothed.motion.leaning_variance_rad2 +=
+        down_B.head<2>().squaredNorm() / static_cast<double>(samples.size());
+    smoothed.motion.tilt_variance_rad2 += square(a.tilt_sigma_rad) / static_cast<double>(samples.size());
+  }
+  smoothed.heave.resize(samples.size());
+  for (const Piece& piece : pieces)
+    interpolate(piece, smooth_heave(piece.increments, smoothed.sea, piece.disturbance_m2ps3),
+                std::span(smoothed.heave).subspan(piece.begin, piece.end - piece.begin));
+  const double systematic = systematic_variance_m2(smoothed.sea, smoothed.motion, sensor);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    HeaveSample& h = smoothed.heave[i];
+    h.utime = samples[i].utime;
+    h.seq = samples[i].seq;
+    h.flags = samples[i].flags;
+    h.q_NB = smoothed.attitude[i].q_NB;
+    h.heave_sigma_m = std::sqrt(square(h.heave_sigma_m) + systematic);
+  }
+  return smoothed;
+}
+
+}  // namespace waverig::estimator

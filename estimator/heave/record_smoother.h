@@ -1,0 +1,37 @@
+// A whole record's heave and attitude, forward and backward: what `smoothed` and `spectral` rest on.
+#pragma once
+#include <vector>
+
+#include "estimator/attitude/attitude_smoother.h"
+#include "estimator/heave/disturbance.h"
+#include "estimator/heave/sea_model.h"
+#include "estimator/method.h"
+#include "estimator/sample_guard.h"
+
+namespace waverig::estimator {
+
+// Collects the usable samples of a record, with the guard's flags on them.
+class Record {
+ public:
+  void add(const ImuSample& sample);
+  const std::vector<ImuSample>& samples() const { return samples_; }
+  // Where pieces without a gap begin, as indices of samples(); starts with 0 unless empty.
+  const std::vector<std::size_t>& pieces() const { return pieces_; }
+
+ private:
+  SampleGuard guard_;
+  std::vector<ImuSample> samples_;
+  std::vector<std::size_t> pieces_;
+  std::int32_t pending_flags_ = 0;
+};
+
+struct SmoothedRecord {
+  std::vector<HeaveSample> heave;        // one a usable sample
+  std::vector<AttitudeSample> attitude;  // beside it
+  SeaModel sea;
+  Motion motion;
+};
+
+SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor);
+
+}  // namespace waverig::estimator

@@ -1,0 +1,69 @@
+#include "estimator/heave/sea_model.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace waverig::estimator {
+namespace {
+
+constexpr double kRidge = 1e-6;             // of the variance: white, so that no frequency is ruled out
+constexpr double kBiasCorner_radps = 0.02;  // below it the bias walk outweighs the noise
+constexpr double kUnknownPeak_hz = 1.0 / 14;
+
+}  // namespace
+
+Predictors levinson(const Eigen::VectorXd& r) {
+  const Eigen::Index n = r.size() - 1;
+  Predictors p;
+  p.coefficients.emplace_back(0);
+  p.variance.push_back(r[0]);
+  for (Eigen::Index m = 1; m <= n; ++m) {
+    const Eigen::VectorXd& a = p.coefficients.back();
+    double numerator = r[m];
+    for (Eigen::Index j = 1; j < m; ++j) numerator -= a[j - 1] * r[m - j];
+    const double reflection = numerator / p.variance.back();
+    Eigen::VectorXd next(m);
+    for (Eigen::Index j = 1; j < m; ++j) next[j - 1] = a[j - 1] - reflection * a[m - j - 1];
+    next[m - 1] = reflection;
+    p.coefficients.push_back(std::move(next));
+    p.variance.push_back(p.variance.back() * (1 - reflection * reflection));
+  }
+  return p;
+}
+
+SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, int order) {
+  const Eigen::Index n = density.size() - 1;
+  SeaModel model;
+  model.autocovariance_m2.setZero(order + 1);
+  double m2 = 0;
+  for (Eigen::Index i = 0; i <= n; ++i) {
+    const double weight = (i == 0 || i == n ? 1.0 : 2.0) * df_hz * density[i];
+    const double step = std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+    for (int j = 0; j <= order; ++j) model.autocovariance_m2[j] += weight * std::cos(step * j);
+    m2 += weight * std::pow(2 * std::numbers::pi * df_hz * static_cast<double>(i), 2);
+  }
+  model.mean_frequency_radps =
+      model.autocovariance_m2[0] > 0 ? std::sqrt(m2 / model.autocovariance_m2[0]) : 0.0;
+  model.autocovariance_m2[0] *= 1 + kRidge;
+  const Predictors predictors = levinson(model.autocovariance_m2);
+  model.ar = predictors.coefficients.back();
+  model.innovation_m2 = predictors.variance.back();
+  return model;
+}
+
+SeaModel unknown_sea(int order, double accel_noise_m2ps3) {
+  constexpr int kBins = 512;
+  const double df = 0.5 / kNodeInterval_s / kBins;
+  Eigen::VectorXd density = Eigen::VectorXd::Zero(kBins + 1);
+  for (int i = 1; i <= kBins; ++i) {
+    const double x = kUnknownPeak_hz / (df * i);
+    density[i] = std::pow(x, 5) * std::exp(-1.25 * std::pow(x, 4));
+  }
+  density *= kUnknownSea_m2 / (2 * df * density.sum());
+  SeaModel model = model_of_density(density, df, order);
+  model.accel_noise_m2ps3 = accel_noise_m2ps3;
+  model.bias_walk_m2ps5 = accel_noise_m2ps3 * kBiasCorner_radps * kBiasCorner_radps;
+  return model;
+}
+
+}  // namespace waverig::estimator

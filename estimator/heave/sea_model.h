@@ -1,0 +1,45 @@
+// SeaModel: the stochastic model of heave and of what disturbs its measurement, on an even grid of nodes.
+//
+// Heave at the nodes is an autoregression, the maximum-entropy process of a given autocovariance (Burg 1975):
+//     z(k) = sum_j a_j z(k-j) + e(k),        e white
+// and its double-integrated acceleration reads z(k) + d(k), where the drift d obeys
+//     d'' = b + n_a,   b' = n_b              (n_a: acceleration noise, b: slow bias, n_b: its walk)
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace waverig::estimator {
+
+inline constexpr double kNodeInterval_s =
+    0.5;  // twenty a wave of 10 s; shorter waves only need their covariance
+
+struct SeaModel {
+  Eigen::VectorXd autocovariance_m2;  // of heave at the nodes, lags 0 … order
+  Eigen::VectorXd ar;                 // a_1 … a_order
+  double innovation_m2 = 0;           // variance of e
+  double accel_noise_m2ps3 = 0;       // two-sided density of n_a, m^2/s^3
+  double bias_walk_m2ps5 = 0;         // two-sided density of n_b
+  double mean_frequency_radps = 0;    // sqrt(m2/m0) of heave
+
+  int order() const { return static_cast<int>(ar.size()); }
+  double heave_variance_m2() const { return autocovariance_m2[0]; }
+};
+
+// One-step predictors of every order 0 … n of a stationary process (Levinson 1947, Durbin 1960).
+struct Predictors {
+  std::vector<Eigen::VectorXd> coefficients;  // [m] has m entries
+  std::vector<double> variance;               // of their errors
+};
+Predictors levinson(const Eigen::VectorXd& autocovariance);
+
+// The model of a sea with the given density of heave at the nodes (two-sided, m^2 s, at i * df, i = 0 … n,
+// where n * df is the nodes' Nyquist frequency).
+SeaModel model_of_density(const Eigen::VectorXd& density_m2s, double df_hz, int order);
+
+inline constexpr double kUnknownSea_m2 = 0.25;  // variance of a sea of Hs 2 m
+
+// Before anything is known: the steepest sea there can be, Phillips' tail down to waves of 14 s
+// (Pierson-Moskowitz).
+SeaModel unknown_sea(int order, double accel_noise_m2ps3);
+
+}  // namespace waverig::estimator

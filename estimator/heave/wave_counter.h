@@ -1,0 +1,30 @@
+// WaveCounter: single waves of a heave series, from zero-up-crossing to zero-up-crossing, while it comes in.
+#pragma once
+#include <optional>
+
+#include "estimator/method.h"
+#include "estimator/types.h"
+
+namespace waverig::estimator {
+
+class WaveCounter {
+ public:
+  explicit WaveCounter(const SensorKnowledge& sensor) : sensor_(sensor) {}
+
+  // Heave about its zero line, in order of time. Answers with the wave this sample completes. A crossing
+  // counts once the heave has been below minus twice its own sigma and comes above plus twice: noise makes no
+  // waves. Samples with flag::kGap end the wave they fall into without an answer; flag::kSettling marks a
+  // wave as it marks its samples.
+  std::optional<Wave> add(const HeaveSample& sample, double tilt_sigma_rad);
+
+ private:
+  std::optional<Wave> cross(double tilt_sigma_rad);
+
+  SensorKnowledge sensor_;
+  bool below_ = false, has_last_ = false, has_start_ = false;
+  std::int64_t start_utime_ = 0, crossing_utime_ = 0, last_utime_ = 0, seq_ = 0;
+  double last_heave_m_ = 0, crest_m_ = 0, trough_m_ = 0, crest_sigma_m_ = 0, trough_sigma_m_ = 0;
+  std::int32_t flags_ = 0;
+};
+
+}  // namespace waverig::estimator
