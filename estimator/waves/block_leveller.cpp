@@ -14,7 +14,7 @@ using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 constexpr int kMostIterations = 12;
 constexpr double kConverged_rad = 2e-5;        // a_h times this is nothing
-constexpr double kMotionCorrelation_s = 3;     // horizontal motion counts as noise that lasts so long
+constexpr double kMotionCorrelation_s = 3;     // in a block of ten seconds waves count as noise that lasts so long
 constexpr double kNodeInterval_s = 0.1;        // the horizontal residual is gathered over so long
 
 // Rotation by a small vector (a degree or so): exact to the fifth power, without trigonometry.
@@ -127,9 +127,10 @@ bool BlockLeveller::iterate() {
   if (count > 0) close_node(last_t_s);
   if (weights <= 0) return true;
 
-  // The prior of the bias against the block's own horizontal motion, taken as noise of some correlation.
-  const double variance = std::max(0.5 * squares / weights, 1e-6);
-  const double prior = variance * kMotionCorrelation_s / std::max(kNodeInterval_s, duration_s / weights) /
+  // The prior of the bias against the block's own horizontal motion, taken as noise; the longer the block, the less
+  // of the waves is left near zero frequency.
+  const double variance = std::max(0.5 * squares / weights, 1e-6), shorter = std::min(1.0, 10 / duration_s);
+  const double prior = variance * kMotionCorrelation_s * shorter * shorter / std::max(kNodeInterval_s, duration_s / weights) /
                        std::max(settings_.gyro_bias_sigma_radps * settings_.gyro_bias_sigma_radps, 1e-16);
   N.diagonal().tail<3>().array() += prior;
   b.tail<3>() -= prior * bias_B_;

@@ -43,34 +43,13 @@ std::vector<RegularWave> first_fits(const WaveSeries& series, double period_s) {
   return waves;
 }
 
-// Frequency and drift from the neighbours, then the fit again: at the second time the crossings are free of the
-// drift and of each span's own noisy length.
-void refit_alike(const WaveSeries& series, std::vector<RegularWave>& waves) {
-  std::vector<WaveFit> fits;
-  for (std::size_t k = 0; k < waves.size(); ++k) {
-    double seconds = 0, count = 0;
-    for_neighbours(waves, k, [&](const RegularWave& w) {
-      seconds += w.fit.end_s - w.fit.begin_s;
-      count += 1;
-    });
-    const WaveFit& f = waves[k].fit;
-    const bool alike = std::abs(seconds / count / (f.end_s - f.begin_s) - 1) < 0.1;
-    const double w = alike ? 2 * pi * count / seconds : f.omega_radps;
-    const double middle = f.down_crossing_s();
-    fits.push_back(fit_wave(series, middle - pi / w, middle + pi / w, w, drift_mps3(waves, k)));
-  }
-  for (std::size_t k = 0; k < waves.size(); ++k) {
-    if (fits[k].valid) waves[k].fit = fits[k];
-  }
-}
-
 void pool_noise(std::vector<RegularWave>& waves) {
   for (std::size_t k = 0; k < waves.size(); ++k) {
     std::vector<double> densities;
     for_neighbours(waves, k, [&](const RegularWave& w) { densities.push_back(w.fit.noise_density); });
     const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
     std::nth_element(densities.begin(), middle, densities.end());
-    const double limit = 2 * *middle;   // a neighbour with a knock in it does not speak for the noise
+    const double limit = 2 * std::min(*middle, waves[k].fit.noise_density);   // a knock does not speak for the noise
     double squares = 0, count = 0;
     for (const double d : densities) {
       if (d > limit) continue;
@@ -88,14 +67,15 @@ double amplitude_sigma(const RegularWave& wave) {
   return std::sqrt(fit * fit + drift);
 }
 
-void drop_unclear(std::vector<RegularWave>& waves, double least_snr) {
+// Keeps what is wanted; where a wave goes, the next one no longer follows.
+template <class Wanted>
+void keep(std::vector<RegularWave>& waves, const Wanted& wanted) {
   bool dropped = false;
   std::vector<RegularWave> kept;
   for (RegularWave& wave : waves) {
-    const bool clear = wave.fit.amplitude_mps2() > least_snr * amplitude_sigma(wave);
     if (dropped) wave.follows = false;
-    dropped = !clear;
-    if (clear) kept.push_back(wave);
+    dropped = !wanted(wave);
+    if (!dropped) kept.push_back(wave);
   }
   waves.swap(kept);
 }
@@ -114,6 +94,16 @@ void share_timing(std::vector<RegularWave>& waves, double floor) {
       waves[k].timing.sigma_s = 2 * events[k].sigma_s;
     }
   }
+}
+
+// The fits again, at the shared frequency and with the drift told by the neighbours.
+void refit(const WaveSeries& series, std::vector<RegularWave>& waves) {
+  std::vector<WaveFit> fits;
+  for (std::size_t k = 0; k < waves.size(); ++k) {
+    const RegularWave& wave = waves[k];
+    fits.push_back(fit_wave(series, wave.begin_s(), wave.end_s(), 2 * pi / wave.timing.period_s, drift_mps3(waves, k)));
+  }
+  for (std::size_t k = 0; k < waves.size(); ++k) waves[k].fit = fits[k];
 }
 
 void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves, std::size_t k,
@@ -155,25 +145,24 @@ void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves
 
 std::vector<RegularWave> regular_waves(const WaveSeries& series, double period_s, const RegularWaveSettings& settings,
                                        const SensorKnowledge& knowledge) {
+  // Twice: at the second time the crossings are free of the drift and of each span's own noisy length, and the noise
+  // is free of both.
   std::vector<RegularWave> waves = first_fits(series, period_s);
-  refit_alike(series, waves);
-  pool_noise(waves);
-  drop_unclear(waves, settings.least_snr);
-  share_timing(waves, settings.timing_floor);
-
-  std::vector<RegularWave> result;
-  for (std::size_t k = 0; k < waves.size(); ++k) {
-    RegularWave wave = waves[k];
-    wave.fit = fit_wave(series, wave.begin_s(), wave.end_s(), 2 * pi / wave.timing.period_s, drift_mps3(waves, k));
-    const bool whole = wave.begin_s() >= series.begin_s() - WaveSeries::kBin_s &&
-                       wave.end_s() <= series.end_s() + WaveSeries::kBin_s;
-    if (!whole || !wave.fit.valid) {
-      if (k + 1 < waves.size()) waves[k + 1].follows = false;
-      continue;
-    }
-    tell_height(series, waves, k, settings, knowledge, wave);
-    result.push_back(wave);
+  for (int round = 0; round < 2; ++round) {
+    pool_noise(waves);
+    keep(waves, [&](const RegularWave& wave) {
+      return wave.fit.valid && wave.fit.amplitude_mps2() > settings.least_snr * amplitude_sigma(wave);
+    });
+    share_timing(waves, settings.timing_floor);
+    refit(series, waves);
   }
+  keep(waves, [&](const RegularWave& wave) {
+    return wave.fit.valid && wave.begin_s() >= series.begin_s() - WaveSeries::kBin_s &&
+           wave.end_s() <= series.end_s() + WaveSeries::kBin_s;
+  });
+  pool_noise(waves);
+  std::vector<RegularWave> result = waves;
+  for (std::size_t k = 0; k < waves.size(); ++k) tell_height(series, waves, k, settings, knowledge, result[k]);
   return result;
 }
 
