@@ -1,5 +1,6 @@
 #include "estimator/evaluation/summary.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -40,6 +41,20 @@ Summary summary_of(const std::string& method, std::span<const estimator::Wave> w
   s.expanded_uncertainty_m = heights.expanded_uncertainty_m;
   s.flags |= heights.flags;
   return s;
+}
+
+void take_sea(Summary& summary, std::span<const estimator::SeaState> seas) {
+  const auto duration_s = [](const estimator::SeaState& sea) {
+    return std::isfinite(sea.duration_s) ? sea.duration_s : 0.0;
+  };
+  const auto longest = std::max_element(
+      seas.begin(), seas.end(), [&](const auto& a, const auto& b) { return duration_s(a) < duration_s(b); });
+  if (longest == seas.end()) return;
+  summary.hm0_m = longest->hm0_m;
+  summary.tm01_s = longest->tm01_s;
+  summary.tm02_s = longest->tm02_s;
+  summary.tp_s = longest->tp_s;
+  summary.flags |= longest->flags;
 }
 
 std::string to_json(const Summary& s) {

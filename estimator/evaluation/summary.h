@@ -29,6 +29,9 @@ Summary summary_of(const std::string& method, const WaveStatistics& statistics);
 // Single waves as a method found them, with the expanded uncertainty (k = 2) of their mean height.
 Summary summary_of(const std::string& method, std::span<const estimator::Wave> waves);
 
+// Spectral sea state: of the longest block, where a method tells several.
+void take_sea(Summary& summary, std::span<const estimator::SeaState> seas);
+
 std::string to_json(const Summary& summary);
 void write_summary(const std::filesystem::path& path, const Summary& summary);  // atomic
 

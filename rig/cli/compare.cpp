@@ -1,0 +1,54 @@
+// waverig compare: two campaigns, cell by cell.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "estimator/evaluation/atomic_file.h"
+#include "estimator/evaluation/compare.h"
+#include "estimator/evaluation/results_io.h"
+#include "lcmtypes/error.h"
+#include "rig/cli/commands.h"
+
+namespace waverig::cli {
+namespace {
+
+struct CompareArguments {
+  std::string baseline, candidate, csv;
+};
+
+int compare(const CompareArguments& arguments) {
+  using evaluation::Verdict;
+  const auto baseline = evaluation::read_results(arguments.baseline);
+  const auto candidate = evaluation::read_results(arguments.candidate);
+  const auto cells = evaluation::compare_cells(baseline.cells, candidate.cells);
+  const bool common = std::any_of(cells.begin(), cells.end(), [](const auto& c) {
+    return c.verdict != Verdict::kOnlyInBaseline && c.verdict != Verdict::kOnlyInCandidate;
+  });
+  if (!common)
+    throw UserError(
+        fmt::format("{} and {}: no period, height and method in common; expected two campaigns of one kind",
+                    arguments.baseline, arguments.candidate));
+  if (!arguments.csv.empty()) evaluation::write_atomically(arguments.csv, evaluation::comparison_csv(cells));
+  fmt::print("{}", evaluation::comparison_table(cells));
+  return evaluation::any_worse(cells) ? 1 : 0;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* command = app.add_subcommand("compare", "Hold a campaign against a baseline, cell by cell");
+  command->add_option("baseline", arguments->baseline, "Results directory to compare with")->required();
+  command->add_option("directory", arguments->candidate, "Results directory to judge")->required();
+  command->add_option("--csv", arguments->csv, "Write the comparison into this file too");
+  command->footer(
+      "A cell is better or worse where mean error or standard deviation differ by more than two standard\n"
+      "uncertainties of the difference. Exit status 1 where any cell is worse.\n"
+      "Example:\n  waverig compare results/before results/after --csv comparison.csv");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return compare(*arguments); }; });
+}
+
+}  // namespace waverig::cli

@@ -1,0 +1,208 @@
+// waverig estimate: heave and waves of a recording, by one method.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "estimator/evaluation/heave_csv.h"
+#include "estimator/evaluation/sample_csv.h"
+#include "estimator/evaluation/summary.h"
+#include "estimator/evaluation/waves_csv.h"
+#include "estimator/evaluation/zero_crossing.h"
+#include "estimator/messages.h"
+#include "estimator/method.h"
+#include "lcmtypes/channels.h"
+#include "lcmtypes/error.h"
+#include "lcmtypes/event_log.h"
+#include "lcmtypes/flags.h"
+#include "rig/cli/commands.h"
+
+namespace waverig::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using estimator::ImuSample;
+
+struct EstimateArguments {
+  std::string input, out, method;
+  double rest_s = 0;
+  double gravity_mps2 = kStandardGravity;
+};
+
+// What a recording gives, sample by sample; false at its end.
+using SampleSource = std::function<bool(ImuSample&)>;
+
+bool is_event_log(const fs::path& path) {
+  constexpr unsigned char kSync[] = {0xED, 0xA1, 0xDA, 0x01};
+  unsigned char head[4] = {};
+  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
+    const bool read = std::fread(head, 1, sizeof head, file) == sizeof head;
+    std::fclose(file);
+    if (read && std::equal(std::begin(head), std::end(head), std::begin(kSync))) return true;
+  }
+  return path.extension() == ".lcm";
+}
+
+SampleSource samples_of_log(const fs::path& path) {
+  auto reader = std::make_shared<EventLogReader>(path);
+  auto event = std::make_shared<LogEvent>();
+  return [reader, event, path, any = false](ImuSample& sample) mutable {
+    while (reader->next(*event)) {
+      if (event->channel != channel::kImu) continue;
+      imu_t message{};
+      if (!event->decode(message))
+        throw UserError(fmt::format("{}: channel {}, time {}: {} bytes of another type; expected imu_t",
+                                    path.string(), event->channel, event->utime, event->data.size()));
+      sample = estimator::sample_of(message);
+      return any = true;
+    }
+    if (!any)
+      throw UserError(
+          fmt::format("{}: no samples; expected imu_t on channel {}", path.string(), channel::kImu));
+    return false;
+  };
+}
+
+SampleSource samples_of(const fs::path& path) {
+  if (is_event_log(path)) return samples_of_log(path);
+  auto reader = std::make_shared<evaluation::SampleCsvReader>(path);
+  return [reader](ImuSample& sample) { return reader->next(sample); };
+}
+
+// The unit rests at the start of the record: what the gyroscope reads there is its bias.
+SampleSource without_gyro_bias(SampleSource source, double rest_s, const fs::path& path) {
+  auto rest = std::make_shared<std::vector<ImuSample>>();
+  Vector3d sum = Vector3d::Zero();
+  ImuSample sample;
+  while (source(sample)) {
+    rest->push_back(sample);
+    sum += sample.w_NB_B;
+    if (static_cast<double>(sample.utime - rest->front().utime) * kMicrosecond >= rest_s) break;
+  }
+  const double recorded_s = static_cast<double>(rest->back().utime - rest->front().utime) * kMicrosecond;
+  if (recorded_s < rest_s)
+    throw UserError(fmt::format("{}: lasts {:.1f} s; expected more than --rest-seconds {:g}", path.string(),
+                                recorded_s, rest_s));
+  const Vector3d bias_radps = sum / static_cast<double>(rest->size());
+  return [source = std::move(source), rest, bias_radps, next = std::size_t{0}](ImuSample& out) mutable {
+    if (next < rest->size())
+      out = (*rest)[next++];
+    else if (!source(out))
+      return false;
+    out.w_NB_B -= bias_radps;
+    return true;
+  };
+}
+
+// Keeps what a method tells and writes its heave as it comes.
+class Collector : public estimator::Output {
+ public:
+  explicit Collector(const fs::path& heave_csv) : writer_(heave_csv) {}
+  void heave(const estimator::HeaveSample& sample) override {
+    writer_.write(sample);
+    utime_.push_back(sample.utime);
+    heave_m_.push_back(sample.heave_m);
+    flags_ |= sample.flags & ~flag::kSettling & ~flag::kNoMagnetometer;
+  }
+  void wave(const estimator::Wave& wave) override { waves_.push_back(wave); }
+  void sea(const estimator::SeaState& sea) override { seas_.push_back(sea); }
+
+  void close() { writer_.close(); }
+  // The method's own waves; of a method that gives none, the zero-up-crossing waves of its heave.
+  std::vector<estimator::Wave> waves() const {
+    if (!waves_.empty() || utime_.empty()) return waves_;
+    return evaluation::waves_of(evaluation::count_waves(utime_, heave_m_, {.interpolate_extremes = true}));
+  }
+  const std::vector<estimator::SeaState>& seas() const { return seas_; }
+  std::int32_t flags() const { return flags_; }
+
+ private:
+  evaluation::HeaveCsvWriter writer_;
+  std::vector<std::int64_t> utime_;
+  std::vector<double> heave_m_;
+  std::vector<estimator::Wave> waves_;
+  std::vector<estimator::SeaState> seas_;
+  std::int32_t flags_ = 0;
+};
+
+void check_units(double mean_force_mps2, const EstimateArguments& arguments) {
+  if (std::abs(mean_force_mps2 - arguments.gravity_mps2) > 0.4 * arguments.gravity_mps2)
+    throw UserError(
+        fmt::format("{}: the mean specific force is {:.3f}; expected about {:.2f} (m/s^2, gravity included)",
+                    arguments.input, mean_force_mps2, arguments.gravity_mps2));
+}
+
+int estimate(const EstimateArguments& arguments) {
+  SampleSource source = samples_of(arguments.input);
+  if (arguments.rest_s > 0) source = without_gyro_bias(std::move(source), arguments.rest_s, arguments.input);
+  estimator::MethodSettings settings;
+  settings.sensor.gravity_mps2 = arguments.gravity_mps2;
+  const auto method = estimator::make_method(arguments.method, settings);
+
+  const fs::path out = arguments.out;
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error)
+    throw UserError(
+        fmt::format("--out {}: {}; expected a directory that can be made", arguments.out, error.message()));
+  fs::remove(out / "summary.json");  // the last to be written: while it is missing the folder is not finished
+
+  Collector collector(out / "heave.csv");
+  ImuSample sample;
+  double force_sum = 0;
+  std::int64_t samples = 0;
+  for (; source(sample); ++samples) {
+    force_sum += sample.f_B.norm();
+    method->add(sample, collector);
+  }
+  method->finish(collector);
+  check_units(force_sum / static_cast<double>(samples), arguments);
+
+  const std::vector<estimator::Wave> waves = collector.waves();
+  evaluation::Summary summary = evaluation::summary_of(arguments.method, waves);
+  summary.flags |= collector.flags();
+  evaluation::take_sea(summary, collector.seas());
+  collector.close();
+  evaluation::write_waves_csv(out / "waves.csv", waves);
+  evaluation::write_summary(out / "summary.json", summary);
+  fmt::print("{}", evaluation::to_json(summary));
+  return 0;
+}
+
+}  // namespace
+
+void add_estimate(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<EstimateArguments>();
+  const auto names = estimator::method_names();
+  const bool smooths = std::find(names.begin(), names.end(), "smoothed") != names.end();
+  arguments->method = smooths ? "smoothed" : "harmonic";
+  CLI::App* command =
+      app.add_subcommand("estimate", "Heave and waves of a recording: heave.csv, waves.csv, summary.json");
+  command->add_option("input", arguments->input, "Recording: an LCM event log, or a sample CSV, plain or .gz")
+      ->required();
+  command->add_option("--out", arguments->out, "Directory to write into")->required();
+  command->add_option("--method", arguments->method, fmt::format("Method: {}", fmt::join(names, ", ")))
+      ->capture_default_str();
+  command
+      ->add_option("--rest-seconds", arguments->rest_s,
+                   "The unit rests so long at the start: take the gyroscope's bias there")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--gravity", arguments->gravity_mps2, "Local gravity, m/s^2")
+      ->check(CLI::Range(9.7, 9.9))
+      ->capture_default_str();
+  command->footer(
+      "The sample CSV has the header utime,ax,ay,az,gx,gy,gz[,mx,my,mz][,temperature]: microseconds, m/s^2, "
+      "rad/s;\n"
+      "body axes forward, right, down; level at rest az = -g.\n"
+      "Examples:\n"
+      "  waverig estimate recording.csv.gz --out results/mine --rest-seconds 5\n"
+      "  waverig estimate results/table2/runs/T12.00s_H100.0cm_r1.lcm --out results/again --method lee2014");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return estimate(*arguments); }; });
+}
+
+}  // namespace waverig::cli

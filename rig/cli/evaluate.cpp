@@ -1,0 +1,171 @@
+// waverig evaluate: judges the recorded runs of a campaign anew, or a heave series by itself or against a
+// truth.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "estimator/evaluation/heave_against_truth.h"
+#include "estimator/evaluation/heave_csv.h"
+#include "estimator/evaluation/results_io.h"
+#include "estimator/evaluation/run_judge.h"
+#include "estimator/evaluation/run_record.h"
+#include "estimator/evaluation/summary.h"
+#include "estimator/evaluation/waves_csv.h"
+#include "estimator/evaluation/zero_crossing.h"
+#include "lcmtypes/error.h"
+#include "rig/cli/commands.h"
+
+namespace waverig::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvaluateArguments {
+  std::string input, out, truth;
+  std::vector<std::string> others;  // NAME=DIR
+  evaluation::AgainstTruthSettings against;
+  evaluation::ZeroCrossingSettings waves;
+};
+
+void make_directory(const std::string& out) {
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error)
+    throw UserError(fmt::format("--out {}: {}; expected a directory that can be made", out, error.message()));
+}
+
+int evaluate_heave(const EvaluateArguments& arguments) {
+  if (arguments.out.empty())
+    throw UserError("--out is missing; expected a directory for waves.csv and summary.json");
+  const evaluation::HeaveSeries heave = evaluation::read_heave_csv(arguments.input);
+  const auto counted = evaluation::count_waves(heave.utime, heave.heave_m, arguments.waves);
+  evaluation::Summary summary = evaluation::summary_of("zero-up-crossing", evaluation::waves_of(counted));
+  if (!arguments.truth.empty()) {
+    const auto comparison =
+        evaluation::compare_with_truth(heave, evaluation::read_heave_csv(arguments.truth), arguments.against);
+    summary.heave_rms_error_m = comparison.rmse_m();
+    summary.heave_rms_error_percent = 100 * comparison.rmse_m() / (4 * comparison.true_std_m());
+    summary.heave_gain = comparison.gain();
+    summary.heave_lag_s = comparison.lag_s();
+  }
+  make_directory(arguments.out);
+  fs::remove(fs::path(arguments.out) / "summary.json");
+  evaluation::write_waves_csv(fs::path(arguments.out) / "waves.csv", evaluation::waves_of(counted));
+  evaluation::write_summary(fs::path(arguments.out) / "summary.json", summary);
+  fmt::print("{}", evaluation::to_json(summary));
+  return 0;
+}
+
+std::map<std::string, fs::path> other_methods(const std::vector<std::string>& others) {
+  std::map<std::string, fs::path> methods;
+  for (const std::string& other : others) {
+    const std::size_t sign = other.find('=');
+    if (sign == std::string::npos || sign == 0 || !fs::is_directory(other.substr(sign + 1)))
+      throw UserError(
+          fmt::format("--heave {}: expected NAME=DIR, where DIR holds a heave CSV for each run", other));
+    methods[other.substr(0, sign)] = other.substr(sign + 1);
+  }
+  return methods;
+}
+
+// Heave of someone else's program for this run joins those of the log.
+void add_other_heave(evaluation::RunRecord& record, const std::string& method, const fs::path& directory) {
+  const evaluation::HeaveSeries series = evaluation::read_heave_csv(directory / (record.run + ".csv"));
+  auto& heave = record.heave[method];
+  heave.clear();
+  for (std::size_t i = 0; i < series.utime.size(); ++i) {
+    estimator::HeaveSample sample;
+    sample.utime = series.utime[i];
+    sample.heave_m = series.heave_m[i];
+    sample.heave_sigma_m = series.heave_sigma_m[i];
+    heave.push_back(sample);
+  }
+  record.waves.erase(method);
+}
+
+// The sensor's rate and noise as far as log and earlier results tell them; they matter for the bound only.
+evaluation::JudgeSettings judge_settings(const evaluation::RunRecord& record,
+                                         const evaluation::CampaignResults& earlier) {
+  evaluation::JudgeSettings settings;
+  if (record.imu.size() > 1)
+    settings.sample_rate_hz =
+        static_cast<double>(record.imu.size() - 1) /
+        (static_cast<double>(record.imu.back().utime - record.imu.front().utime) * kMicrosecond);
+  for (const evaluation::RunResult& run : earlier.runs)
+    if (run.run == record.run) settings.noise_density_mps2_rthz = run.noise_density_mps2_rthz;
+  return settings;
+}
+
+int evaluate_campaign(const EvaluateArguments& arguments) {
+  const fs::path directory = arguments.input,
+                 out = arguments.out.empty() ? directory : fs::path(arguments.out);
+  const auto others = other_methods(arguments.others);
+  evaluation::CampaignResults results = evaluation::read_results(directory);
+  std::vector<fs::path> logs;
+  if (fs::is_directory(directory / "runs"))
+    for (const auto& entry : fs::directory_iterator(directory / "runs"))
+      if (entry.path().extension() == ".lcm") logs.push_back(entry.path());
+  if (logs.empty())
+    throw UserError(fmt::format("{}: no runs/*.lcm; expected the logs of a campaign", arguments.input));
+  std::sort(logs.begin(), logs.end());
+
+  std::vector<evaluation::RunResult> judged;
+  for (const fs::path& log : logs) {
+    evaluation::RunRecord record = evaluation::load_run(log);
+    for (const auto& [name, heave] : others) add_other_heave(record, name, heave);
+    for (auto& run : evaluation::judge(record, judge_settings(record, results)))
+      judged.push_back(std::move(run));
+  }
+  results.runs = std::move(judged);
+  results.cells = evaluation::cells_of(results.runs);
+  make_directory(out.string());
+  evaluation::write_results(out, results);
+  fmt::print("{}", evaluation::results_csv(results.cells));
+  return 0;
+}
+
+int evaluate(const EvaluateArguments& arguments) {
+  return fs::is_directory(arguments.input) ? evaluate_campaign(arguments) : evaluate_heave(arguments);
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<EvaluateArguments>();
+  CLI::App* command = app.add_subcommand("evaluate", "Judge a campaign's logs anew, or a heave series");
+  command
+      ->add_option("input", arguments->input,
+                   "Results directory, or heave CSV (utime,heave_m[,heave_sigma_m]), plain or .gz")
+      ->required();
+  command->add_option("--out", arguments->out, "Directory to write into; of a campaign its own by default");
+  command->add_option("--heave", arguments->others,
+                      "NAME=DIR: judge another program too, its heave of each run in DIR/<run>.csv");
+  command->add_option("--truth", arguments->truth,
+                      "Heave CSV to hold the heave against; column 'moving' selects where");
+  command
+      ->add_option("--high-pass-hz", arguments->against.high_pass_hz,
+                   "Compare above this frequency only (zero phase)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--zero-line-m", arguments->waves.level_m, "Zero line of the waves, above the mean");
+  command->add_flag("--detrend", arguments->waves.remove_trend,
+                    "Zero line is the straight line of least squares");
+  command
+      ->add_option("--dead-band-m", arguments->waves.dead_band_m,
+                   "A crossing counts once the heave has left this band")
+      ->check(CLI::NonNegativeNumber);
+  command->footer(
+      "Examples:\n"
+      "  waverig evaluate results/table2\n"
+      "  waverig evaluate results/table2 --heave theirs=their/heave --out results/side-by-side\n"
+      "  waverig evaluate buoy.heave.csv --out results/buoy\n"
+      "  waverig evaluate results/mine/heave.csv --truth cameras.csv.gz --high-pass-hz 0.12 --out "
+      "results/judged");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return evaluate(*arguments); }; });
+}
+
+}  // namespace waverig::cli

@@ -1,0 +1,46 @@
+// waverig merge: shards of one campaign become one results directory.
+#include "estimator/evaluation/merge.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimator/evaluation/results_io.h"
+#include "rig/cli/commands.h"
+
+namespace waverig::cli {
+namespace {
+
+struct MergeArguments {
+  std::vector<std::string> shards;
+  std::string out;
+};
+
+int merge(const MergeArguments& arguments) {
+  const std::vector<std::filesystem::path> shards(arguments.shards.begin(), arguments.shards.end());
+  const std::string command =
+      fmt::format("waverig merge {} --out {}", fmt::join(arguments.shards, " "), arguments.out);
+  const auto results = evaluation::merge_into(arguments.out, shards, command);
+  fmt::print("{}", evaluation::results_csv(results.cells));
+  return 0;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<MergeArguments>();
+  CLI::App* command = app.add_subcommand("merge", "Join the shards of one campaign");
+  command->add_option("shards", arguments->shards, "Results directories of waverig sweep --shard K/N")
+      ->required();
+  command->add_option("--out", arguments->out, "Results directory, made anew")->required();
+  command->footer(
+      "Refuses shards of different settings, seed or version, and shards that share a run.\n"
+      "Example:\n  waverig merge results/part* --out results/all");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return merge(*arguments); }; });
+}
+
+}  // namespace waverig::cli
