@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "lcmtypes/error.h"
@@ -115,6 +117,31 @@ double combined_sigma(const std::vector<BudgetTerm>& budget) {
   return std::sqrt(sum);
 }
 
+double FrontEndChannel::half_loop_A(double temperature_degC) const {
+  if (bias_loop.empty()) return 0;
+  const auto above = std::ranges::lower_bound(bias_loop, temperature_degC, {}, &HalfLoop::temperature_degC);
+  if (above == bias_loop.begin()) return above->half_A;
+  if (above == bias_loop.end()) return bias_loop.back().half_A;
+  const HalfLoop &low = *std::prev(above), &high = *above;
+  const double part = (temperature_degC - low.temperature_degC) / (high.temperature_degC - low.temperature_degC);
+  return std::lerp(low.half_A, high.half_A, part);
+}
+
+double FrontEndChannel::bias_expanded_A(double temperature_degC) const {
+  const double a = std::abs(half_loop_A(temperature_degC));
+  const double sigma = std::max(bias_A.sigma_at(temperature_degC), 1e-15);
+  const auto inside = [&](double U) {   // P(|+-a + N(0, sigma)| <= U)
+    const double scale = sigma * std::numbers::sqrt2;
+    return 0.5 * (std::erf((U - a) / scale) + std::erf((U + a) / scale));
+  };
+  double low = 0, high = a + 4 * sigma;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (inside(middle) < 0.95 ? low : high) = middle;
+  }
+  return high;
+}
+
 const FrontEndChannel& FrontEndCalibration::channel(std::string_view name) const {
   std::string known;
   for (const FrontEndChannel& c : channels) {
@@ -134,7 +161,7 @@ FrontEndCalibration merge(const FrontEndCalibration& scale_factor, const FrontEn
   for (FrontEndChannel& c : merged.channels) {
     const FrontEndChannel& b = bias.channel(c.name);
     c.bias_A = b.bias_A;
-    c.bias_hysteresis_A = b.bias_hysteresis_A;
+    c.bias_loop = b.bias_loop;
     c.bias_budget = b.bias_budget;
   }
   merged.oscillator = bias.oscillator;
@@ -166,7 +193,8 @@ std::string to_json(const FrontEndCalibration& c) {
     k["dsf_N"] = json_of(channel.dsf_N);
     k["dsf_P"] = json_of(channel.dsf_P);
     k["bias_A"] = json_of(channel.bias_A);
-    k["bias_hysteresis_A"] = channel.bias_hysteresis_A;
+    k["bias_loop"] = Json::array();
+    for (const HalfLoop& h : channel.bias_loop) k["bias_loop"].push_back({h.temperature_degC, h.half_A});
     k["dsf_N_budget"] = json_of(channel.dsf_N_budget);
     k["dsf_P_budget"] = json_of(channel.dsf_P_budget);
     k["bias_budget"] = json_of(channel.bias_budget);
@@ -198,7 +226,13 @@ FrontEndCalibration front_end_calibration_from_json(const std::string& text, con
     channel.dsf_N = law_of(r.at("dsf_N"));
     channel.dsf_P = law_of(r.at("dsf_P"));
     channel.bias_A = law_of(r.at("bias_A"));
-    channel.bias_hysteresis_A = r.at("bias_hysteresis_A").number();
+    for (const Reader& point : r.at("bias_loop").items()) {
+      const std::vector<Reader> pair = point.items();
+      if (pair.size() != 2) point.refuse("", "expected [temperature_degC, half_A]");
+      channel.bias_loop.push_back({pair[0].number(), pair[1].number()});
+    }
+    if (!std::ranges::is_sorted(channel.bias_loop, {}, &HalfLoop::temperature_degC))
+      r.refuse("bias_loop", "expected ascending temperatures");
     channel.dsf_N_budget = budget_of(r.at("dsf_N_budget"));
     channel.dsf_P_budget = budget_of(r.at("dsf_P_budget"));
     channel.bias_budget = budget_of(r.at("bias_budget"));

@@ -28,16 +28,26 @@ inline double count_rate_Hz(double counts, double nominal_s, double clock_ratio)
   return counts / (nominal_s * clock_ratio);
 }
 
+// Half of the hysteresis at a temperature: (coming from cold minus coming from hot) / 2, with its sign.
+struct HalfLoop {
+  double temperature_degC = 0;
+  double half_A = 0;
+};
+
 struct FrontEndChannel {
   std::string name;
   double K_N0_C = 0, K_P0_C = 0;      // coulomb a pulse, by design
   TemperatureLaw dsf_N, dsf_P;        // relative
   TemperatureLaw bias_A;              // middle of the hysteresis loop
-  double bias_hysteresis_A = 0;       // full width of the loop where it is widest
+  std::vector<HalfLoop> bias_loop;    // ascending in temperature; empty: no hysteresis known
   std::vector<BudgetTerm> dsf_N_budget, dsf_P_budget, bias_budget;   // at the reference temperature
 
   double K_N_C(double temperature_degC) const { return K_N0_C * (1 + dsf_N.at(temperature_degC)); }
   double K_P_C(double temperature_degC) const { return K_P0_C * (1 + dsf_P.at(temperature_degC)); }
+  double half_loop_A(double temperature_degC) const;   // straight lines between the points, level outside
+  // 95 % expanded uncertainty of the bias at a temperature reached from either side: the loop's two branches are
+  // equally likely, and the normal part of the budget stands about each. Its half is the stated u for k = 2.
+  double bias_expanded_A(double temperature_degC) const;
   // Kim, eq. (2): the mean current over the counting interval, in ampere.
   double current_A(double rate_N_Hz, double rate_P_Hz, double temperature_degC) const {
     return K_N_C(temperature_degC) * rate_N_Hz - K_P_C(temperature_degC) * rate_P_Hz + bias_A.at(temperature_degC);

@@ -60,6 +60,31 @@ double reading_noise_A(const std::vector<double>& bias_A, const std::vector<Ramp
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
+// Weights 1 2 3 2 1 over neighbouring bins: the loop is smooth over a few degrees, its noise is not.
+void smooth(std::vector<HalfLoop>& loop) {
+  const std::vector<HalfLoop> raw = loop;
+  const auto n = static_cast<int>(raw.size());
+  for (int i = 0; i < n; ++i) {
+    double sum = 0, weights = 0;
+    for (int k = std::max(0, i - 2); k <= std::min(n - 1, i + 2); ++k) {
+      const double weight = 3 - std::abs(k - i);
+      sum += weight * raw[static_cast<std::size_t>(k)].half_A;
+      weights += weight;
+    }
+    loop[static_cast<std::size_t>(i)].half_A = sum / weights;
+  }
+}
+
+double ramp_rate_degC_s(const std::vector<BiasReading>& readings, const std::vector<Ramp>& ramp) {
+  double change = 0, time_s = 0;
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    if (ramp[i] == Ramp::kNone || ramp[i - 1] != ramp[i]) continue;
+    change += (ramp[i] == Ramp::kUp ? 1 : -1) * (readings[i].temperature_degC - readings[i - 1].temperature_degC);
+    time_s += readings[i].duration_s;
+  }
+  return time_s > 0 ? change / time_s : 0;
+}
+
 }  // namespace
 
 BiasResult fit_bias(const std::vector<BiasReading>& readings, const FrontEndChannel& channel,
@@ -84,25 +109,42 @@ BiasResult fit_bias(const std::vector<BiasReading>& readings, const FrontEndChan
     const auto& [up, down] = both;
     result.loop.push_back({(index + 0.5) * settings.bin_degC, up.mean_A(), down.mean_A()});
     if (up.count == 0 || down.count == 0) continue;
-    const double width = std::abs(up.mean_A() - down.mean_A());
-    result.hysteresis_A = std::max(result.hysteresis_A, width);
+    const double width = up.mean_A() - down.mean_A(), T = 0.5 * (up.mean_degC() + down.mean_degC());
+    result.hysteresis_A = std::max(result.hysteresis_A, std::abs(width));
     squares += width * width;
     const double noise = std::max(result.noise_A, 1e-15) * std::sqrt(1.0 / up.count + 1.0 / down.count) / 2;
-    middle.push_back({0.5 * (up.mean_degC() + down.mean_degC()), 0.5 * (up.mean_A() + down.mean_A()), noise});
+    middle.push_back({T, 0.5 * (up.mean_A() + down.mean_A()), noise});
+    result.half_loop.push_back({T, 0.5 * width});
   }
   if (middle.size() < 4) throw UserError("bias of " + channel.name + ": expected a ramp up and a ramp down");
-  result.hysteresis_rms_A = std::sqrt(squares / static_cast<double>(middle.size()));
+  const auto n = static_cast<double>(middle.size());
+  result.hysteresis_rms_A = std::sqrt(squares / n);
+  result.law = fit_temperature_law(middle, settings.law).law;
 
-  const TemperatureLawFit fit = fit_temperature_law(middle, settings.law);
-  result.law = fit.law;
-  // Inside a loop of two or more hysteretic mechanisms values near its edges are the less likely ones: triangular.
-  const double hysteresis_sigma = 0.5 * result.hysteresis_rms_A / std::sqrt(6.0);
-  // What the polynomial leaves of the middle's shape belongs to every temperature alike.
-  const double shape = middle.front().sigma > 0 ? fit.dispersion * middle[middle.size() / 2].sigma : 0;
-  result.budget = {{"hysteresis", hysteresis_sigma, 'B'},
-                   {"shape against temperature", shape, 'A'},
+  smooth(result.half_loop);
+
+  // What single readings leave about their own branch comes with every use: shape, wander, noise.
+  FrontEndChannel branches;
+  branches.bias_loop = result.half_loop;
+  double left = 0;
+  int readings_used = 0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (ramp[i] == Ramp::kNone) continue;
+    const double T = readings[i].temperature_degC, side = ramp[i] == Ramp::kUp ? 1 : -1;
+    left += std::pow(bias_A[i] - result.law.at(T) - side * branches.half_loop_A(T), 2);
+    ++readings_used;
+  }
+  const double left_sigma = std::sqrt(left / readings_used);
+  double slope_A_degC = 0;
+  for (const TemperaturePoint& p : middle)
+    slope_A_degC += std::abs(result.law.at(p.temperature_degC + 0.5) - result.law.at(p.temperature_degC - 0.5)) / n;
+  const double rate_degC_s = ramp_rate_degC_s(readings, ramp);
+  const double lag_sigma = slope_A_degC * rate_degC_s * settings.lag_s / std::sqrt(3.0);
+  result.budget = {{"hysteresis", 0.5 * result.hysteresis_rms_A, 'B'},
+                   {"repeatability and shape against temperature", left_sigma, 'A'},
+                   {"thermometer lag", lag_sigma, 'B'},
                    {"fit", result.law.sigma_at(settings.law.reference_degC), 'A'}};
-  result.law.covariance(0, 0) += hysteresis_sigma * hysteresis_sigma + shape * shape;
+  result.law.covariance(0, 0) += left_sigma * left_sigma + lag_sigma * lag_sigma;
   return result;
 }
 

@@ -16,6 +16,7 @@ struct BiasReading {
 struct BiasSettings {
   double bin_degC = 1;          // width of the temperature bins in which the two ramps are compared
   double turn_degC = 1.0;       // this near to a turning point readings belong to neither ramp
+  double lag_s = 60;            // the dies may follow the thermometer up to this late
   TemperatureLawSettings law = {20, 6, false};
 };
 
@@ -25,16 +26,17 @@ struct BiasPoint {
 };
 
 struct BiasResult {
-  TemperatureLaw law;                 // of the loop's middle
+  TemperatureLaw law;                 // of the loop's middle; its sigma is the normal part of the budget
+  std::vector<HalfLoop> half_loop;
   std::vector<BiasPoint> loop;
   double hysteresis_A = 0;            // full width where it is widest
   double hysteresis_rms_A = 0;        // full width, root mean square over temperature
   double noise_A = 0;                 // standard deviation of one reading about its ramp's neighbours
-  std::vector<BudgetTerm> budget;
+  std::vector<BudgetTerm> budget;     // the half loop counts with its root mean square
 };
 
 // i_bias = -(K_N C_N - K_P C_P) with no input. Readings in the order of measurement, ramp up first or down first.
-// Throws UserError where one of the ramps is missing.
+// Throws UserError where one of the ramps is missing, naming the channel.
 BiasResult fit_bias(const std::vector<BiasReading>& readings, const FrontEndChannel& channel,
                     const BiasSettings& settings = {});
 
