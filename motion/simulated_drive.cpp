@@ -111,6 +111,13 @@ DriveFeedback SimulatedDrive::process(const DriveCommand& command) {
     if (mode_ == DriveMode::kHoming && (command.controlword & 0x10) != 0 && !homed_) homing_ = true;
   }
 
+  DriveFeedback feedback = observe();
+  feedback.sequence = command.sequence;
+  return feedback;
+}
+
+DriveFeedback SimulatedDrive::observe() const {
+  const DriveState state = machine_.state();
   std::uint16_t word = bits_of(state);
   if (limited_) word |= statusword::kInternalLimit;
   if (mode_ == DriveMode::kHoming && homed_) word |= statusword::kHomingAttained | statusword::kTargetReached;
@@ -119,7 +126,7 @@ DriveFeedback SimulatedDrive::process(const DriveCommand& command) {
   const double rate_counts = std::clamp(observer_.rate_radps * counts_per_rad_, -2147483647.0, 2147483647.0);
   const double permille = std::clamp(1e3 * torque_Nm_ / settings_.rated_torque_Nm, -32767.0, 32767.0);
   return {.utime = utime(),
-          .sequence = command.sequence,
+          .sequence = last_feedback_.sequence,
           .statusword = word,
           .mode = mode_,
           .position = static_cast<std::int32_t>(static_cast<std::uint32_t>(encoder_counts())),

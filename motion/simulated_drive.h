@@ -61,7 +61,8 @@ class SimulatedDrive final : public Drive {
   explicit SimulatedDrive(const SimulatedDriveSettings& settings = {}, std::int64_t start_utime = 0);
 
   DriveFeedback exchange(const DriveCommand& command) override;
-  void advance(double dt_s);  // any length; cut into whole steps of at most inner_step_s
+  DriveFeedback observe() const;  // as an exchange would tell, but nothing is commanded and no watchdog fed
+  void advance(double dt_s);      // any length; cut into whole steps of at most inner_step_s
 
   const ShaftState& shaft() const { return shaft_; }
   DriveState state() const { return machine_.state(); }
