@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "lcmtypes/error.h"
@@ -37,9 +38,19 @@ void Bus::publish_raw(std::string_view channel, const void* data, std::size_t si
   channel_buffer_.assign(channel);
   if (lcm_.publish(channel_buffer_, data, static_cast<unsigned int>(size)) < 0)
     throw std::runtime_error(fmt::format("LCM refused to publish {} bytes on {}", size, channel));
+  if (in_process_ && surely_heard(channel)) ++waiting_;
+}
+
+bool Bus::surely_heard(std::string_view channel) const {
+  return hears_all_ || std::find(plain_channels_.begin(), plain_channels_.end(), channel) != plain_channels_.end();
 }
 
 void Bus::subscribe_raw(const std::string& pattern, RawHandler handler) {
+  (pattern == ".*" ? hears_all_ : hears_patterns_) = true;
+  add_subscription(pattern, std::move(handler));
+}
+
+void Bus::add_subscription(const std::string& pattern, RawHandler handler) {
   subscriptions_.push_back(std::make_unique<Subscription>(Subscription{this, std::move(handler)}));
   lcm_t* lcm = lcm_.getUnderlyingLCM();
   lcm_subscription_t* subscription = lcm_subscribe(lcm, pattern.c_str(), &Bus::dispatch, subscriptions_.back().get());
@@ -58,7 +69,13 @@ void Bus::dispatch(const lcm_recv_buf_t* buffer, const char* channel, void* user
 }
 
 bool Bus::handle(int timeout_ms) {
-  const int handled = lcm_.handleTimeout(timeout_ms);
+  int handled = 0;
+  if (waiting_ > 0) {
+    --waiting_;
+    handled = lcm_.handle() == 0 ? 1 : -1;
+  } else if (!in_process_ || hears_patterns_) {
+    handled = lcm_.handleTimeout(timeout_ms);
+  }
   if (pending_) std::rethrow_exception(std::exchange(pending_, nullptr));
   if (handled < 0) throw std::runtime_error("LCM failed while waiting for a message");
   return handled > 0;

@@ -40,7 +40,8 @@ class Bus {
   // handler(const Message&) for each well-formed message; malformed ones are counted, never delivered.
   template <class Message, class Handler>
   void subscribe(std::string_view channel, Handler handler) {
-    subscribe_raw(escaped_channel(channel),
+    plain_channels_.emplace_back(channel);
+    add_subscription(escaped_channel(channel),
                   [this, handler = std::move(handler), message = Message{}](
                       std::string_view, const void* data, std::size_t size) mutable {
                     if (static_cast<int>(size) != message.getEncodedSize() ||
@@ -64,6 +65,8 @@ class Bus {
 
  private:
   struct Subscription;
+  void add_subscription(const std::string& pattern, RawHandler handler);
+  bool surely_heard(std::string_view channel) const;
   static void dispatch(const lcm_recv_buf_t* buffer, const char* channel, void* user);
   [[noreturn]] static void fail_encode(std::string_view channel);
 
@@ -74,6 +77,12 @@ class Bus {
   std::string channel_buffer_;
   std::exception_ptr pending_;
   std::int64_t malformed_ = 0;
+
+  // Embedded mode: how many messages surely wait. Handling those needs no look whether there is one, which costs a
+  // third of the time. "Surely": on a channel that was subscribed to by its plain name, or by all.
+  std::int64_t waiting_ = 0;
+  std::vector<std::string> plain_channels_;
+  bool hears_all_ = false, hears_patterns_ = false;
 };
 
 }  // namespace waverig
