@@ -1,0 +1,91 @@
+#include "estimator/evaluation/compare.h"
+
+#include <gtest/gtest.h>
+
+#include "motion/kinematics/random.h"
+
+namespace waverig::evaluation {
+namespace {
+
+CellResult cell(double mean_m, double std_m, double expanded_m, const std::string& method = "m") {
+  CellResult c;
+  c.period_s = 6;
+  c.height_m = 0.6;
+  c.method = method;
+  c.statistics.waves = 101;
+  c.statistics.mean_height_m = mean_m;
+  c.statistics.mean_true_height_m = 0.6;
+  c.statistics.std_m = std_m;
+  c.statistics.expanded_uncertainty_m = expanded_m;
+  return c;
+}
+
+CellComparison compared(const CellResult& baseline, const CellResult& candidate) {
+  return compare_cells(std::vector{baseline}, std::vector{candidate}).at(0);
+}
+
+TEST(Compare, FindsNothingInItself) {
+  const auto c = compared(cell(0.61, 0.01, 0.002), cell(0.61, 0.01, 0.002));
+  EXPECT_EQ(c.verdict, Verdict::kNotSignificant);
+  EXPECT_FALSE(any_worse(std::vector{c}));
+}
+
+TEST(Compare, TellsBetterFromWorseBeyondTheStatedUncertainty) {
+  // Standard uncertainty of the difference: hypot(2 mm, 2 mm) / 2 = 1.41 mm, significant from 2.83 mm.
+  EXPECT_EQ(compared(cell(0.603, 0.01, 0.002), cell(0.6057, 0.01, 0.002)).mean_error_m.verdict,
+            Verdict::kNotSignificant);
+  EXPECT_EQ(compared(cell(0.603, 0.01, 0.002), cell(0.6059, 0.01, 0.002)).mean_error_m.verdict,
+            Verdict::kWorse);
+  EXPECT_EQ(compared(cell(0.6059, 0.01, 0.002), cell(0.603, 0.01, 0.002)).mean_error_m.verdict,
+            Verdict::kBetter);
+  // An error of the other sign is no worse.
+  EXPECT_EQ(compared(cell(0.603, 0.01, 0.002), cell(0.597, 0.01, 0.002)).mean_error_m.verdict,
+            Verdict::kNotSignificant);
+}
+
+TEST(Compare, JudgesTheScatterToo) {
+  // Standard uncertainty of each: 10 mm / sqrt(200) = 0.71 mm; of the difference about 1 mm.
+  EXPECT_EQ(compared(cell(0.6, 0.010, 0.002), cell(0.6, 0.0118, 0.002)).verdict, Verdict::kNotSignificant);
+  EXPECT_EQ(compared(cell(0.6, 0.010, 0.002), cell(0.6, 0.0125, 0.002)).verdict, Verdict::kWorse);
+  EXPECT_EQ(compared(cell(0.6, 0.0125, 0.002), cell(0.6, 0.010, 0.002)).verdict, Verdict::kBetter);
+}
+
+TEST(Compare, IsWorseWhereEitherIsWorse) {
+  EXPECT_EQ(compared(cell(0.62, 0.010, 0.002), cell(0.6, 0.02, 0.002)).verdict, Verdict::kWorse);
+}
+
+TEST(Compare, IsWorseWhereTheCandidateSaysNothing) {
+  EXPECT_EQ(compared(cell(0.6, 0.01, 0.002), cell(estimator::kUnknown, 0.01, 0.002)).verdict,
+            Verdict::kWorse);
+}
+
+TEST(Compare, MatchesCellsBySettingAndMethod) {
+  const auto cells = compare_cells(std::vector{cell(0.6, 0.01, 0.002, "a"), cell(0.6, 0.01, 0.002, "b")},
+                                   std::vector{cell(0.6, 0.01, 0.002, "c"), cell(0.6, 0.01, 0.002, "b")});
+  ASSERT_EQ(cells.size(), 3u);
+  EXPECT_EQ(cells[0].verdict, Verdict::kOnlyInBaseline);
+  EXPECT_EQ(cells[1].verdict, Verdict::kNotSignificant);
+  EXPECT_EQ(cells[2].verdict, Verdict::kOnlyInCandidate);
+  EXPECT_FALSE(any_worse(cells));
+  EXPECT_NE(comparison_csv(cells).find("\n6,60,b,not significant,0.0000,0.0000,"), std::string::npos)
+      << comparison_csv(cells);
+}
+
+// Two campaigns of one and the same quality differ significantly in no more than one cell of ten: two tests a
+// cell, each at k = 2.
+TEST(Compare, SeldomCriesWolf) {
+  RandomStream random(3, "compare");
+  int wolves = 0;
+  const int cells = 4000;
+  for (int i = 0; i < cells; ++i) {
+    const auto drawn = [&] {
+      return cell(0.65 + random.gaussian(0.001), 0.01 * (1 + random.gaussian() / std::sqrt(200.0)), 0.002);
+    };
+    wolves += compared(drawn(), drawn()).verdict != Verdict::kNotSignificant ? 1 : 0;
+  }
+  EXPECT_LT(wolves, 0.11 * cells);
+  EXPECT_GT(wolves, 0.07 * cells);
+}
+
+}  // namespace
+}  // namespace waverig::evaluation
