@@ -14,7 +14,7 @@ endif()
 waverig_library(rig_models
   SOURCES
     mechanism/rotating_arm.cpp
-    sensors/accelerometer.cpp sensors/gyroscope.cpp
+    sensors/accelerometer.cpp sensors/gyroscope.cpp sensors/magnetometer.cpp
     frontend/crc.cpp frontend/frame_codec.cpp frontend/frame_layout.cpp frontend/simulated_unit.cpp
     acquisition/acquisition.cpp acquisition/calibration_run.cpp acquisition/serial_port.cpp
   LINK waverig::kinematics waverig::calibration
