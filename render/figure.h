@@ -65,7 +65,7 @@ struct Bars {
   std::vector<double> at{}, value{};
   std::string name{};
   Look look{};
-  double base = 0;
+  std::vector<double> base{};   // where each begins, 0 by default; a single one holds for all
   double width = 0.8;       // in units of the axis
   bool horizontal = false;  // `at` along y
 };

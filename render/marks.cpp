@@ -17,6 +17,10 @@ bool fits(double value, Scale scale) { return std::isfinite(value) && (scale != 
 
 float near_page(float px) { return std::clamp(px, -kFarPx, kFarPx); }
 
+double base_of(const Bars& bars, std::size_t i) {
+  return bars.base.empty() ? 0 : bars.base[std::min(i, bars.base.size() - 1)];
+}
+
 struct ExtentsOf {
   Scale xs, ys;
   MarkExtents out{};
@@ -39,7 +43,7 @@ struct ExtentsOf {
     for (std::size_t i = 0; i < std::min(m.at.size(), m.value.size()); ++i) {
       if (!std::isfinite(m.value[i])) continue;
       for (const double edge : {m.at[i] - m.width / 2, m.at[i] + m.width / 2}) {
-        for (const double length : {m.base, m.value[i]}) m.horizontal ? add(length, edge) : add(edge, length);
+        for (const double length : {base_of(m, i), m.value[i]}) m.horizontal ? add(length, edge) : add(edge, length);
       }
     }
     out.pad_x = true;
@@ -134,11 +138,11 @@ struct Draw {
       if (!std::isfinite(m.at[i]) || !std::isfinite(m.value[i])) continue;
       const double from = m.at[i] - m.width / 2, to = m.at[i] + m.width / 2;
       if (view.panel.polar) {
-        wedge(from, to, m.base, m.value[i], m.look);
+        wedge(from, to, base_of(m, i), m.value[i], m.look);
         continue;
       }
       const Mapping& lengths = m.horizontal ? view.x : view.y;
-      const double base = lengths.scale == Scale::kLog && m.base <= 0 ? lengths.low : m.base;
+      const double base = lengths.scale == Scale::kLog && base_of(m, i) <= 0 ? lengths.low : base_of(m, i);
       const auto corner = [&](double at, double length) {
         return m.horizontal ? view.at(length, at) : view.at(at, length);
       };

@@ -1,0 +1,207 @@
+#include "render/figures/noise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+#include "estimator/calibration/allan.h"
+
+namespace waverig::render {
+namespace {
+
+constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
+
+double median_interval_s(const std::vector<estimator::ImuSample>& imu) {
+  std::vector<std::int64_t> steps;
+  for (std::size_t i = 1; i < imu.size(); ++i) steps.push_back(imu[i].utime - imu[i - 1].utime);
+  if (steps.empty()) return 0;
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  return static_cast<double>(steps[steps.size() / 2]) * kMicrosecond;
+}
+
+// Pools the records of one axis: variances weighted with their degrees of freedom.
+std::vector<estimator::AllanPoint> pooled(const std::vector<RestRecord>& records, std::size_t axis) {
+  std::vector<estimator::AllanPoint> sum;
+  for (const RestRecord& record : records) {
+    const std::vector<estimator::AllanPoint> points = estimator::allan_deviation(record.axes[axis], record.interval_s);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i >= sum.size()) sum.push_back({points[i].tau_s, 0, 0});
+      sum[i].deviation += points[i].degrees * points[i].deviation * points[i].deviation;
+      sum[i].degrees += points[i].degrees;
+    }
+  }
+  for (estimator::AllanPoint& p : sum) p.deviation = p.degrees > 0 ? std::sqrt(p.deviation / p.degrees) : kAuto;
+  return sum;
+}
+
+// The curve of the four terms together.
+double deviation_of(const estimator::AllanTerms& t, double tau_s) {
+  return std::sqrt(3 * t.quantisation * t.quantisation / (tau_s * tau_s) + t.random_walk * t.random_walk / tau_s +
+                   2 * std::numbers::ln2 / std::numbers::pi * t.bias_instability * t.bias_instability +
+                   t.rate_random_walk * t.rate_random_walk * tau_s / 3);
+}
+
+struct Quantity {
+  const char *title, *label, *unit, *walk_unit, *bias_unit;
+  double scale, walk_scale, bias_scale;   // from SI to what is shown
+};
+
+Panel allan_panel(const std::vector<RestRecord>& records, const Quantity& q) {
+  Panel panel{.title = q.title, .x = {.label = "Averaging time \u03C4", .unit = "s", .scale = Scale::kLog},
+              .y = {.label = q.label, .unit = q.unit, .scale = Scale::kLog}, .legend = Legend::kAbove};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int color = static_cast<int>(axis);
+    const std::vector<estimator::AllanPoint> points = pooled(records, axis);
+    const estimator::AllanTerms terms = estimator::fit_allan(points);
+    Points measured{.look = {.color = color, .marker = Marker::kCircle, .marker_pt = 3.5}};
+    Band band{.look = {.color = color, .alpha = 0.15}};
+    Line fit{.look = {.color = color, .width_pt = 0.9}};
+    for (const estimator::AllanPoint& p : points) {
+      if (!(p.deviation > 0)) continue;
+      const double shown = q.scale * p.deviation, u = 1 / std::sqrt(2 * std::max(1.0, p.degrees));   // one sigma, relative
+      measured.x.push_back(p.tau_s);
+      measured.y.push_back(shown);
+      band.x.push_back(p.tau_s);
+      band.low.push_back(shown * std::max(0.05, 1 - u));
+      band.high.push_back(shown * (1 + u));
+      fit.x.push_back(p.tau_s);
+      fit.y.push_back(q.scale * deviation_of(terms, p.tau_s));
+    }
+    std::string name = fmt::format("{}: N = {:.3g} {}", kAxisNames[axis], q.walk_scale * terms.random_walk, q.walk_unit);
+    if (terms.bias_instability > 0) name += fmt::format(", B = {:.2g} {}", q.bias_scale * terms.bias_instability, q.bias_unit);
+    measured.name = fit.name = name;
+    panel.marks.emplace_back(std::move(band));
+    panel.marks.emplace_back(std::move(fit));
+    panel.marks.emplace_back(std::move(measured));
+  }
+  return panel;
+}
+
+}  // namespace
+
+RestRecords rest_of(const evaluation::RunRecord& run) {
+  constexpr double kStillM = 2e-4, kShortestS = 2;
+  RestRecords rest;
+  if (run.truth.empty() || run.imu.empty()) return rest;
+  std::int64_t end_utime = run.truth.back().utime;
+  for (const evaluation::TruthSample& sample : run.truth) {
+    if (std::abs(sample.heave_m - run.truth.front().heave_m) <= kStillM) continue;
+    end_utime = sample.utime;
+    break;
+  }
+  const double interval_s = median_interval_s(run.imu);
+  RestRecord force{.interval_s = interval_s, .axes = {}}, rate = force;
+  for (std::size_t i = 0; i < run.imu.size() && run.imu[i].utime < end_utime; ++i) {
+    if (i > 0 && static_cast<double>(run.imu[i].utime - run.imu[i - 1].utime) * kMicrosecond > 1.5 * interval_s) break;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      force.axes[axis].push_back(run.imu[i].f_B[static_cast<Eigen::Index>(axis)]);
+      rate.axes[axis].push_back(run.imu[i].w_NB_B[static_cast<Eigen::Index>(axis)]);
+    }
+  }
+  if (static_cast<double>(force.axes[0].size()) * interval_s < kShortestS) return rest;
+  rest.specific_force_mps2.push_back(std::move(force));
+  rest.angular_rate_radps.push_back(std::move(rate));
+  return rest;
+}
+
+void append(RestRecords& to, RestRecords&& from) {
+  for (RestRecord& r : from.specific_force_mps2) to.specific_force_mps2.push_back(std::move(r));
+  for (RestRecord& r : from.angular_rate_radps) to.angular_rate_radps.push_back(std::move(r));
+}
+
+Figure allan_figure(const RestRecords& rest) {
+  double longest_s = 0;
+  for (const RestRecord& r : rest.specific_force_mps2) longest_s = std::max(longest_s, r.interval_s * static_cast<double>(r.axes[0].size()));
+  Figure figure{.title = "Allan deviation of the sensors at rest",
+                .subtitle = fmt::format("calibrated samples, {} record{} of up to {:.0f} s; bands: one standard deviation; lines: fitted noise terms (IEEE Std 952)",
+                                        rest.specific_force_mps2.size(), rest.specific_force_mps2.size() == 1 ? "" : "s", longest_s),
+                .columns = 2,
+                .height_mm = 100};
+  constexpr double kMicroG = kStandardGravity * 1e-6;
+  figure.panels.push_back(allan_panel(rest.specific_force_mps2, {"(a) Accelerometer", "Allan deviation", "m/s\u00B2", "\u00B5g\u00B7\u221As", "\u00B5g", 1,
+                                                                 1 / kMicroG, 1 / kMicroG}));
+  figure.panels.push_back(allan_panel(rest.angular_rate_radps, {"(b) Gyroscope", "Allan deviation", "\u00B0/s", "\u00B0/s\u00B7\u221As", "\u00B0/s", 1 / kDegree,
+                                                                1 / kDegree, 1 / kDegree}));
+  return figure;
+}
+
+Spectrum welch(std::span<const double> values, double interval_s, std::size_t block) {
+  Spectrum out;
+  block = std::min(block, values.size());
+  if (block < 8 || !(interval_s > 0)) return out;
+  std::vector<double> window(block), windowed(block), power(block / 2 + 1, 0.0);
+  double window_power = 0;
+  for (std::size_t i = 0; i < block; ++i) {
+    window[i] = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(block));
+    window_power += window[i] * window[i];
+  }
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<std::complex<double>> bins;
+  int blocks = 0;
+  for (std::size_t begin = 0; begin + block <= values.size(); begin += std::max<std::size_t>(1, block / 2), ++blocks) {
+    double mean = 0;
+    for (std::size_t i = 0; i < block; ++i) mean += values[begin + i] / static_cast<double>(block);
+    for (std::size_t i = 0; i < block; ++i) windowed[i] = window[i] * (values[begin + i] - mean);
+    fft.fwd(bins, windowed);
+    for (std::size_t k = 0; k < power.size(); ++k) power[k] += std::norm(bins[k]);
+  }
+  for (std::size_t k = 1; k < power.size(); ++k) {
+    const double sides = 2 * k == block ? 1 : 2;
+    out.frequency_hz.push_back(static_cast<double>(k) / (static_cast<double>(block) * interval_s));
+    out.density_rthz.push_back(std::sqrt(sides * power[k] * interval_s / (window_power * blocks)));
+  }
+  return out;
+}
+
+Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz) {
+  Figure figure{.title = "Spectra of the steady part",
+                .subtitle = fmt::format("wave period {:g} s, wave height {:g} cm, repeat {}; amplitude density, Hann blocks of ten periods", run.period_s,
+                                        run.height_m / kCentimetre, run.repeat + 1),
+                .columns = 2,
+                .height_mm = 100};
+  const auto steady = [&](std::int64_t utime) { return utime >= run.steady_begin_utime && utime < run.steady_end_utime; };
+  const double interval_s = median_interval_s(run.imu);
+  const auto block_of = [&](double dt) { return dt > 0 ? 2 * static_cast<std::size_t>(5 * run.period_s / dt) : 0; };
+  Panel force{.title = "(a) Specific force", .x = {.label = "Frequency", .unit = "Hz", .scale = Scale::kLog},
+              .y = {.label = "Density", .unit = "m/s\u00B2/\u221AHz", .scale = Scale::kLog}};
+  std::array<std::vector<double>, 3> axes;
+  for (const estimator::ImuSample& sample : run.imu) {
+    if (!steady(sample.utime)) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) axes[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Spectrum s = welch(axes[axis], interval_s, block_of(interval_s));
+    force.marks.emplace_back(Line{.x = s.frequency_hz, .y = s.density_rthz, .name = fmt::format("f {}", kAxisNames[axis]),
+                                  .look = {.color = static_cast<int>(axis), .width_pt = 0.8}});
+  }
+  if (noise_density_mps2_rthz > 0)
+    force.marks.emplace_back(Rule{.at = noise_density_mps2_rthz, .name = "noise floor of the bound", .look = {.color = kInk, .width_pt = 1, .dash = Dash::kDashed}});
+  Panel heave{.title = "(b) Heave", .x = force.x, .y = {.label = "Density", .unit = "m/\u221AHz", .scale = Scale::kLog}};
+  const auto add = [&](const std::string& name, int color, const auto& samples, Dash dash) {
+    std::vector<double> values;
+    std::int64_t first = 0, last = 0;
+    for (const auto& sample : samples) {
+      if (!steady(sample.utime)) continue;
+      if (values.empty()) first = sample.utime;
+      last = sample.utime;
+      values.push_back(sample.heave_m);
+    }
+    if (values.size() < 16) return;
+    const double dt = static_cast<double>(last - first) * kMicrosecond / static_cast<double>(values.size() - 1);
+    const Spectrum s = welch(values, dt, block_of(dt));
+    heave.marks.emplace_back(Line{.x = s.frequency_hz, .y = s.density_rthz, .name = name, .look = {.color = color, .width_pt = 0.9, .dash = dash}});
+  };
+  int color = 0;
+  for (const auto& [method, samples] : run.heave) add(method, color++, samples, Dash::kSolid);
+  add("truth", kInk, run.truth, Dash::kDashed);
+  force.legend = heave.legend = Legend::kAbove;
+  figure.panels = {std::move(force), std::move(heave)};
+  return figure;
+}
+
+}  // namespace waverig::render

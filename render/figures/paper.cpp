@@ -1,0 +1,164 @@
+#include "render/figures/paper.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "render/published.h"
+
+namespace waverig::render {
+namespace {
+
+double since_start_s(const evaluation::RunRecord& run, std::int64_t utime) {
+  return static_cast<double>(utime - run.start_utime) * kMicrosecond;
+}
+
+std::string setting_text(const evaluation::RunRecord& run) {
+  return fmt::format("wave period {:g} s, wave height {:g} cm, repeat {}", run.period_s, run.height_m / kCentimetre, run.repeat + 1);
+}
+
+const char* calibration_text(bool calibrated) {
+  return calibrated ? "accelerometer calibrated" : "accelerometer not calibrated (nominal sensitivities)";
+}
+
+bool steady(const evaluation::RunRecord& run, const estimator::Wave& wave) {
+  return wave.start_utime >= run.steady_begin_utime &&
+         wave.start_utime + static_cast<std::int64_t>(wave.period_s / kMicrosecond) <= run.steady_end_utime;
+}
+
+// What lies outside the steady part is shaded: it is in no statistics.
+void shade_ramps(const evaluation::RunRecord& run, double end_s, Panel& panel, bool named) {
+  if (run.steady_end_utime <= run.steady_begin_utime) return;
+  panel.marks.emplace_back(Span{.from = 0, .to = since_start_s(run, run.steady_begin_utime),
+                                .name = named ? "rest and ramps, left out of the statistics" : ""});
+  panel.marks.emplace_back(Span{.from = since_start_s(run, run.steady_end_utime), .to = end_s});
+}
+
+}  // namespace
+
+PaperTraces recorded_traces(const evaluation::RunRecord& run, const std::string& method) {
+  PaperTraces traces{.method = method, .imu = run.imu, .heave = {}, .waves = {}};
+  if (const auto it = run.heave.find(method); it != run.heave.end()) traces.heave = it->second;
+  if (const auto it = run.waves.find(method); it != run.waves.end()) traces.waves = it->second;
+  return traces;
+}
+
+Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated) {
+  Figure figure{.title = "Inertial data measured on the wave simulator",
+                .subtitle = setting_text(run) + "; " + calibration_text(calibrated),
+                .share_x = true,
+                .height_mm = 180};
+  std::vector<double> attitude_s, roll_deg, pitch_deg;
+  for (const estimator::HeaveSample& sample : traces.heave) {
+    const Euler euler = euler_of(sample.q_NB);
+    attitude_s.push_back(since_start_s(run, sample.utime));
+    roll_deg.push_back(euler.roll_rad / kDegree);
+    pitch_deg.push_back(euler.pitch_rad / kDegree);
+  }
+  std::vector<double> sample_s;
+  std::array<std::vector<double>, 3> f_B;
+  for (const estimator::ImuSample& sample : traces.imu) {
+    sample_s.push_back(since_start_s(run, sample.utime));
+    for (std::size_t axis = 0; axis < 3; ++axis) f_B[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
+  }
+  const double end_s = sample_s.empty() ? 0 : sample_s.back();
+  const Axis time{.label = "Time since the start of the record", .unit = "s"};
+  const auto add = [&](const char* title, const char* label, const char* unit, const std::vector<double>& x, std::vector<double> y, int color) {
+    Panel panel{.title = title, .x = time, .y = {.label = label, .unit = unit}};
+    shade_ramps(run, end_s, panel, false);
+    panel.marks.emplace_back(Line{.x = x, .y = std::move(y), .look = {.color = color, .width_pt = 0.7}});
+    figure.panels.push_back(std::move(panel));
+  };
+  add("(a) Roll", "Roll", "\u00B0", attitude_s, std::move(roll_deg), 0);
+  add("(b) Pitch", "Pitch", "\u00B0", attitude_s, std::move(pitch_deg), 0);
+  add("(c) Specific force f, x (forward)", "f", "m/s\u00B2", sample_s, std::move(f_B[0]), 1);
+  add("(d) Specific force f, y (right)", "f", "m/s\u00B2", sample_s, std::move(f_B[1]), 1);
+  add("(e) Specific force f, z (down)", "f", "m/s\u00B2", sample_s, std::move(f_B[2]), 1);
+  return figure;
+}
+
+Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated) {
+  Figure figure{.title = "Trace of the buoy before its errors are corrected",
+                .subtitle = setting_text(run) + "; " + traces.method + ", " + calibration_text(calibrated),
+                .height_mm = 85};
+  Panel panel{.x = {.label = "Time since the start of the record", .unit = "s"}, .y = {.label = "Heave", .unit = "m"}};
+  Line line{.name = "levelled acceleration, integrated twice", .look = {.color = 0}};
+  for (const estimator::HeaveSample& sample : traces.heave) {
+    line.x.push_back(since_start_s(run, sample.utime));
+    line.y.push_back(sample.heave_m);
+  }
+  Line truth{.name = "true heave", .look = {.color = 1, .width_pt = 0.8}};
+  for (const evaluation::TruthSample& sample : run.truth) {
+    truth.x.push_back(since_start_s(run, sample.utime));
+    truth.y.push_back(sample.heave_m);
+  }
+  shade_ramps(run, line.x.empty() ? 0 : line.x.back(), panel, false);
+  panel.marks.emplace_back(std::move(line));
+  panel.marks.emplace_back(std::move(truth));
+  figure.panels.push_back(std::move(panel));
+  return figure;
+}
+
+Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated) {
+  constexpr double kSampleS = 0.05;   // fine enough to draw a wave with
+  Line trace{.name = "corrected trace, crests at zero", .look = {.color = 0}};
+  Points steady_heights{.name = "single waves", .look = {.color = 0, .marker = Marker::kCircle, .marker_pt = 3.5}};
+  Points other_heights{.name = "in the ramps", .look = {.color = 0, .marker = Marker::kHollowCircle, .marker_pt = 3.5}};
+  double n = 0, sum_m = 0, square_m2 = 0;
+  for (const estimator::Wave& wave : traces.waves) {
+    const double begin_s = since_start_s(run, wave.start_utime);
+    const double omega = 2 * std::numbers::pi / wave.period_s, alpha_cm = 0.5 * wave.height_m / kCentimetre;
+    for (double t = 0; t < wave.period_s; t += kSampleS) {
+      trace.x.push_back(begin_s + t);
+      trace.y.push_back(alpha_cm * (std::cos(omega * t) - 1));   // Lee 2014, eq (13), P_hat0
+    }
+    const bool counted = steady(run, wave);
+    Points& heights = counted ? steady_heights : other_heights;
+    heights.x.push_back(begin_s + 0.5 * wave.period_s);
+    heights.y.push_back(wave.height_m / kCentimetre);
+    if (!counted) continue;
+    ++n;
+    sum_m += wave.height_m;
+    square_m2 += wave.height_m * wave.height_m;
+  }
+  const double mean_m = n > 0 ? sum_m / n : kAuto;
+  const double std_m = n > 1 ? std::sqrt(std::max(0.0, (square_m2 - n * mean_m * mean_m) / (n - 1))) : kAuto;
+  std::string statistics = "no steady waves";
+  if (n > 1) {
+    statistics = fmt::format("mean {:.2f} cm, error rate {:.2f} %, standard deviation {:.2f} cm over {:.0f} waves", mean_m / kCentimetre,
+                             100 * std::abs(mean_m - run.height_m) / run.height_m, std_m / kCentimetre, n);
+  }
+  const PublishedCell& published = calibrated ? kPublishedCalibrated : kPublishedUncalibrated;
+  if (published_cell(run.period_s, run.height_m) != nullptr && run.period_s == published.period_s && run.height_m == published.height_m) {
+    statistics += fmt::format("\npublished: mean {:.2f} cm, error rate {:.2f} %, standard deviation {:.2f} cm", published.mean_height_m / kCentimetre,
+                              published.error_rate_percent, published.std_m / kCentimetre);
+  }
+  Figure figure{.title = calibrated ? "Trace and wave heights with the accelerometer calibrated" : "Trace and wave heights without accelerometer calibration",
+                .subtitle = setting_text(run) + "; " + traces.method + ": " + statistics,
+                .share_x = true,
+                .height_mm = 125};
+  double end_s = trace.x.empty() ? 0 : trace.x.back();
+  Line truth{.name = "true heave less half the set height", .look = {.color = kFaintInk, .width_pt = 0.7}};
+  for (const evaluation::TruthSample& sample : run.truth) {
+    truth.x.push_back(since_start_s(run, sample.utime));
+    truth.y.push_back((sample.heave_m - 0.5 * run.height_m) / kCentimetre);
+    end_s = std::max(end_s, truth.x.back());
+  }
+  const Axis time{.label = "Time since the start of the record", .unit = "s"};
+  Panel top{.title = "(a) Trace of the buoy", .x = time, .y = {.label = "Heave", .unit = "cm"}};
+  shade_ramps(run, end_s, top, false);
+  top.marks.emplace_back(std::move(truth));
+  top.marks.emplace_back(std::move(trace));
+  top.legend = Legend::kAbove;
+  Panel bottom{.title = "(b) Wave height", .x = time, .y = {.label = "Wave height", .unit = "cm"}};
+  shade_ramps(run, end_s, bottom, true);
+  bottom.marks.emplace_back(Rule{.at = run.height_m / kCentimetre, .name = "set height"});
+  bottom.marks.emplace_back(std::move(other_heights));
+  bottom.marks.emplace_back(std::move(steady_heights));
+  bottom.legend = Legend::kAbove;
+  figure.panels = {std::move(top), std::move(bottom)};
+  return figure;
+}
+
+}  // namespace waverig::render
