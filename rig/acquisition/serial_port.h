@@ -21,6 +21,7 @@ class SerialPort {
   std::span<const std::uint8_t> read(std::span<std::uint8_t> buffer, int timeout_ms);
   // Writes all bytes; throws std::runtime_error where the line does not take them in time.
   void write(std::span<const std::uint8_t> bytes, int timeout_ms);
+  int descriptor() const { return descriptor_; }   // for poll()
 
  private:
   std::filesystem::path path_;

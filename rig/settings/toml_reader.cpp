@@ -35,6 +35,13 @@ std::string missing(std::string_view expected) { return fmt::format("is missing:
 
 bool TomlTable::has(std::string_view key) const { return shared_->node != nullptr && shared_->node->contains(key); }
 
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::string> names;
+  if (shared_->node != nullptr)
+    for (const auto& [key, node] : *shared_->node) names.emplace_back(key.str());
+  return names;
+}
+
 const toml::node* TomlTable::find(std::string_view key) {
   shared_->asked.emplace(key);
   return shared_->node == nullptr ? nullptr : shared_->node->get(key);

@@ -26,6 +26,7 @@ struct Range {
 class TomlTable {
  public:
   bool has(std::string_view key) const;
+  std::vector<std::string> keys() const;            // in the order of the alphabet
 
   // Each returns the value of the key, or the fallback where the key is absent; throws UserError where the value has
   // another type or lies outside the range.
