@@ -60,6 +60,9 @@ class Acquisition {
     }
   }
 
+  // Counts that were recorded, made samples again: with another calibration, say.
+  estimator::ImuSample sample_of(const UnitCounts& counts);
+
   // The next sample begins a record: its seq is 0.
   void begin_record() { new_record_ = true; }
 
@@ -67,7 +70,6 @@ class Acquisition {
 
  private:
   UnitCounts counts_of(const Frame& frame) const;
-  estimator::ImuSample sample_of(const UnitCounts& counts);
 
   Sensitivities sensitivities_;
   FrameDecoder decoder_;

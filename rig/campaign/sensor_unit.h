@@ -1,5 +1,6 @@
 // The sensor unit of a campaign: from the names in its settings to a drawn, simulated unit.
 #pragma once
+#include "estimator/calibration/accelerometer_calibration.h"
 #include "rig/campaign/settings.h"
 #include "rig/frontend/simulated_unit.h"
 
@@ -11,5 +12,11 @@ UnitSettings unit_settings(const CampaignSettings& campaign);
 // The one unit that the campaign tests, drawn from its seed: as it is calibrated, and as it is measured with later.
 UnitParameters fresh_unit(const CampaignSettings& campaign);
 UnitParameters tested_unit(const CampaignSettings& campaign);
+
+// What a laboratory knows of its sensor, for the methods' uncertainty budgets: what the calibration says of itself, what
+// the data sheet says the six positions cannot see (nonlinearity, temperature, instability), and, for a unit that has
+// aged since, the certificate's allowance for that.
+estimator::SensorKnowledge sensor_knowledge(const CampaignSettings& campaign,
+                                            const estimator::SensorCalibration& calibration);
 
 }  // namespace waverig::rig

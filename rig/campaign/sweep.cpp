@@ -16,27 +16,6 @@
 namespace waverig::rig {
 namespace {
 
-// What the calibration says of itself, for the methods' uncertainty budget. A unit that has aged since is known to
-// have: the certificate's allowance for ageing is added.
-estimator::SensorKnowledge knowledge_of(const CampaignSettings& campaign, const estimator::SensorCalibration& calibration) {
-  estimator::SensorKnowledge known = campaign.estimator.sensor;
-  const Matrix3d M = calibration.accelerometer.sigma_M();
-  const auto rms = [](const auto& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); };
-  known.accel_bias_sigma_mps2 = rms(calibration.accelerometer.sigma_b_mps2());
-  known.accel_scale_sigma = rms(Vector3d(M.diagonal()));
-  known.accel_misalignment_sigma_rad =
-      std::sqrt((M.squaredNorm() - M.diagonal().squaredNorm()) / 6);
-  known.gyro_bias_sigma_radps = rms(calibration.gyroscope.offset_sigma_radps);
-  if (campaign.sensor.aged) {
-    const AgeingSettings age;
-    known.accel_bias_sigma_mps2 = std::hypot(known.accel_bias_sigma_mps2, age.accel_bias_mps2);
-    known.accel_scale_sigma = std::hypot(known.accel_scale_sigma, age.accel_scale);
-    known.accel_misalignment_sigma_rad = std::hypot(known.accel_misalignment_sigma_rad, age.accel_misalignment);
-    known.gyro_bias_sigma_radps = std::hypot(known.gyro_bias_sigma_radps, age.gyro_offset_radps);
-  }
-  return known;
-}
-
 // Calls work(i) for i in [0, count) from some threads; the first exception ends all and is rethrown.
 template <class Work>
 void in_parallel(int jobs, std::size_t count, Work work) {
@@ -79,7 +58,7 @@ CalibratedUnit calibrate(const CampaignSettings& campaign) {
   const CalibrationRun run = run_six_positions(unit.settings, fresh, unit.sensitivities, gravity,
                                                derived_seed(campaign.seed, "six positions"), settings);
   unit.calibration = run.calibration;
-  unit.methods.sensor = knowledge_of(campaign, run.calibration);
+  unit.methods.sensor = sensor_knowledge(campaign, run.calibration);
   result.report_json = calibration_report(
       run, true_calibration(unit.settings, fresh, unit.sensitivities, run.calibration.temperature_degC));
   return result;

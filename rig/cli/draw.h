@@ -1,4 +1,4 @@
-// What a finished campaign shows: its figures, from the recorded runs.
+// What a finished campaign shows: its figures, from its results and recorded runs.
 #pragma once
 #include <filesystem>
 
@@ -7,8 +7,8 @@
 
 namespace waverig::cli {
 
-// Draws into directory/figures; jobs threads at most.
+// Draws into directory/figures with that many threads; the pictures do not depend on it.
 void draw_campaign(const evaluation::CampaignResults& results, const std::filesystem::path& directory,
-                   const rig::Campaign& campaign, const rig::CampaignUnit& unit, int jobs);
+                   const rig::CampaignUnit& unit, int jobs);
 
 }  // namespace waverig::cli

@@ -62,7 +62,7 @@ int sweep(const SweepArguments& arguments) {
       rig::run_campaign(campaign, calibrated.unit, rig::runs_of_shard(plan, shard), directory, options);
   results.calibration_json = calibrated.report_json;
   evaluation::write_results(directory.working(), results);
-  draw_campaign(results, directory.working(), campaign, calibrated.unit, arguments.jobs);
+  draw_campaign(results, directory.working(), calibrated.unit, arguments.jobs);
   directory.finish();
   fmt::print("{}\nResults: {}\n", rig::results_table(results), arguments.out);
   return 0;

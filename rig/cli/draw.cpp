@@ -1,0 +1,29 @@
+#include "rig/cli/draw.h"
+
+#include <fmt/format.h>
+
+#include "render/campaign_figures.h"
+#include "rig/campaign/reestimate.h"
+
+namespace waverig::cli {
+namespace {
+
+constexpr const char* kPaperMethod = "lee2014";
+
+render::PaperTraces uncalibrated_traces(const evaluation::RunRecord& run, const rig::CampaignUnit& unit) {
+  rig::Reestimated again = rig::estimate_uncalibrated(run, unit, kPaperMethod);
+  return {kPaperMethod, std::move(again.imu), std::move(again.heave), std::move(again.waves)};
+}
+
+}  // namespace
+
+void draw_campaign(const evaluation::CampaignResults& results, const std::filesystem::path& directory,
+                   const rig::CampaignUnit& unit, int jobs) {
+  render::FigureOptions options;
+  options.threads = jobs;
+  options.provenance = {results.version, results.command, fmt::format("{}", results.seed)};
+  options.uncalibrated = [&unit](const evaluation::RunRecord& run) { return uncalibrated_traces(run, unit); };
+  render::draw_campaign_figures(results, directory / "runs", directory / "figures", options);
+}
+
+}  // namespace waverig::cli

@@ -1,0 +1,121 @@
+// The program from outside: exit status, the one line on stderr, and that bad input harms nothing.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "tests/campaign/temporary_directory.h"
+
+namespace waverig {
+namespace {
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+Outcome run(const TemporaryDirectory& temporary, const std::string& arguments) {
+  const std::string out = (temporary / "stdout").string(), err = (temporary / "stderr").string();
+  const int status = std::system((std::string("cd ") + temporary.path().string() + " && " WAVERIG_PROGRAM " " + arguments + " >" +
+                                  out + " 2>" + err)
+                                     .c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(out), bytes_of(err)};
+}
+
+constexpr const char* kTiny =
+    "name = \"tiny\"\n[sweep]\nperiods_s = [4.0]\nheights_cm = [50.0]\nduration_s = 30.0\nrepeats = 1\nramp_periods = 1\n";
+
+TEST(Program, HelpOfEveryCommandShowsAnExampleAndExitsWithZero) {
+  const TemporaryDirectory temporary;
+  const Outcome help = run(temporary, "--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.out.find("Examples:"), std::string::npos);
+  for (const char* command : {"sweep", "plan", "estimate", "evaluate", "figures", "compare", "merge"}) {
+    const Outcome outcome = run(temporary, std::string(command) + " --help");
+    EXPECT_EQ(outcome.status, 0) << command;
+    EXPECT_NE(outcome.out.find("waverig " + std::string(command)), std::string::npos) << command;
+  }
+}
+
+struct BadCall {
+  const char* name;
+  const char* arguments;
+  const char* complaint;   // what the line must hold
+};
+
+class ProgramRefuses : public ::testing::TestWithParam<BadCall> {};
+
+TEST_P(ProgramRefuses, WithExitTwoAndOneLine) {
+  const TemporaryDirectory temporary;
+  temporary.write("unknown_key.toml", std::string("colour = 1\n") + kTiny);
+  temporary.write("wrong_type.toml", std::string(kTiny) + "rest_before_s = \"long\"\n");
+  temporary.write("too_high.toml", "name = \"t\"\n[sweep]\nperiods_s = [6.0]\nheights_cm = [900.0]\n");
+  temporary.write("no.toml", "name = \n");
+  temporary.write("broken_row.csv", "utime,ax,ay,az,gx,gy,gz\n0,0,0,-9.8,0,0,0\n10000,0,0,x,0,0,0\n");
+  temporary.write("no_header.csv", "1,2,3\n");
+  temporary.write("truncated.lcm", std::string("\xED\xA1\xDA\x01", 4) + "short");
+  temporary.write("heave.csv", "utime,heave_m\n0,1\n0,2\n");
+  const Outcome outcome = run(temporary, GetParam().arguments);
+  EXPECT_EQ(outcome.status, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find(GetParam().complaint), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(temporary / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    BadInput, ProgramRefuses,
+    ::testing::Values(
+        BadCall{"NoCommand", "", "subcommand"}, BadCall{"UnknownCommand", "swep x", "swep"},
+        BadCall{"NoOut", "sweep unknown_key.toml", "--out"},
+        BadCall{"MissingFile", "sweep nowhere.toml --out out", "nowhere.toml"},
+        BadCall{"NotToml", "sweep no.toml --out out", "no.toml:1"},
+        BadCall{"UnknownKey", "sweep unknown_key.toml --out out", "unknown_key.toml:1: colour = 1: unknown key"},
+        BadCall{"WrongType", "sweep wrong_type.toml --out out", "wrong_type.toml:8: sweep.rest_before_s = 'long'"},
+        BadCall{"TooHigh", "sweep too_high.toml --out out", "too_high.toml:4: sweep.heights_cm = 900"},
+        BadCall{"BadShard", "sweep too_high.toml --out out --shard 3/2", "--shard 3/2"},
+        BadCall{"BrokenRow", "estimate broken_row.csv --out out", "broken_row.csv:3"},
+        BadCall{"NoHeader", "estimate no_header.csv --out out", "no_header.csv:1"},
+        BadCall{"TruncatedLog", "estimate truncated.lcm --out out", "truncated.lcm"},
+        BadCall{"UnknownMethod", "estimate broken_row.csv --method magic --out out", "magic"},
+        BadCall{"TimeStandsStill", "evaluate heave.csv --out out", "heave.csv:3"}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(Program, SweepWritesEverythingAResultsDirectoryHolds) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  const Outcome outcome = run(temporary, "sweep tiny.toml --out out --jobs 2");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "") << "no progress where stderr is no terminal";
+  EXPECT_NE(outcome.out.find("harmonic"), std::string::npos);
+  for (const char* file : {"results.csv", "results.json", "campaign.toml", "calibration.json", "runs/T04.00s_H050.0cm_r1.lcm"})
+    EXPECT_TRUE(std::filesystem::exists(temporary / "out" / file)) << file;
+  EXPECT_FALSE(std::filesystem::is_empty(temporary / "out/figures"));
+  const std::string csv = bytes_of(temporary / "out/results.csv");
+  EXPECT_TRUE(csv.starts_with("period_s,height_cm,method,waves,mean_height_cm,error_rate_percent,std_cm,"
+                              "expanded_uncertainty_cm,rmse_cm"))
+      << csv;
+  const Outcome again = run(temporary, "sweep tiny.toml --out out");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_EQ(bytes_of(temporary / "out/results.csv"), csv);
+}
+
+TEST(Program, ResultsDirectoryAloneReproducesItself) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out first --seed 5").status, 0);
+  ASSERT_EQ(run(temporary, "sweep first/campaign.toml --out second").status, 0);
+  EXPECT_EQ(bytes_of(temporary / "first/results.csv"), bytes_of(temporary / "second/results.csv"));
+}
+
+TEST(Program, PlanSaysNoWithExitOneAndTheReason) {
+  const TemporaryDirectory temporary;
+  temporary.write("c.toml", "name = \"t\"\n[sweep]\nperiods_s = [1.0, 6.0]\nheights_cm = [200.0]\n");
+  const Outcome outcome = run(temporary, "plan c.toml");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("REFUSED"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace waverig
