@@ -1,6 +1,7 @@
 #include "estimator/waves/block_leveller.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,12 +13,13 @@ namespace {
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
-constexpr int kMostIterations = 12;
-constexpr double kConverged_rad = 2e-5;        // a_h times this is nothing
-constexpr double kMotionCorrelation_s = 3;     // in a block of ten seconds waves count as noise that lasts so long
-constexpr double kNodeInterval_s = 0.1;        // the horizontal residual is gathered over so long
+constexpr int kMostIterations = 15;
+constexpr double kConverged_rad = 1e-6;
+constexpr double kNode_s = 0.1;
+constexpr double kGiven = 0.8, kDropped = 0.6;  // of a full block: what is good enough to give, what is done with
+constexpr double kMotionCorrelation_s = 3;      // in a block of ten seconds waves count as noise that lasts so long
 
-// Rotation by a small vector (a degree or so): exact to the fifth power, without trigonometry.
+// Rotation by a small vector (a few degrees): exact to the fifth power, without trigonometry.
 Quaterniond small_rotation(const Vector3d& phi) {
   const double x = phi.squaredNorm();
   const double k = 0.5 - x / 48;
@@ -31,106 +33,108 @@ double taper(double t_s, double duration_s, double taper_s) {
 
 }  // namespace
 
+void BlockLeveller::restart() {
+  first_raw_ += raw_.size();
+  given_ = first_raw_;
+  raw_.clear();
+  nodes_.clear();
+  has_rate_ = has_attitude_ = false;
+}
+
 void BlockLeveller::add(const ImuSample& s, const GuardVerdict& verdict, std::deque<LevelledSample>& out) {
   if (!started_) {
     started_ = true;
     first_utime_ = s.utime;
   }
-  if (verdict.usable && verdict.dt_s > settings_.longest_gap_s) {
-    level(raw_.size(), out);
-    raw_.clear();
-    given_ = 0;
-    has_attitude_ = false;
+  if (verdict.usable && verdict.dt_s > settings_.longest_gap_s) finish(out);
+  if (verdict.usable) last_t_s_ = static_cast<double>(s.utime - first_utime_) * kMicrosecond;
+  if (nodes_.empty() || nodes_.back().duration_s >= kNode_s) {
+    Node node;
+    node.first = first_raw_ + raw_.size();
+    node.begin_s = nodes_.empty() ? last_t_s_ : nodes_.back().begin_s + nodes_.back().duration_s;
+    nodes_.push_back(node);
   }
+  Node& node = nodes_.back();
   Raw raw;
-  raw.rotates = verdict.usable;
-  raw.dt_s = verdict.dt_s;
-  raw.w_B = s.w_NB_B;
   LevelledSample& l = raw.levelled;
   l.utime = s.utime;
   l.seq = s.seq;
   l.flags = verdict.flags;
   l.usable = verdict.usable && !(verdict.flags & flag::kSaturation);
-  if (verdict.usable) last_t_s_ = static_cast<double>(s.utime - first_utime_) * kMicrosecond;
   l.t_s = last_t_s_;
   l.f_B = s.f_B;
+  if (verdict.usable) {
+    if (has_rate_) {
+      raw.turn_B = 0.5 * (last_w_B_ + s.w_NB_B) * verdict.dt_s;
+      raw.dt_s = verdict.dt_s;
+      node.turn = node.turn * small_rotation(raw.turn_B);
+      node.duration_s += verdict.dt_s;
+    }
+    last_w_B_ = s.w_NB_B;
+    has_rate_ = true;
+    if (l.usable) {
+      node.force_sum += node.turn * s.f_B;
+      node.forces += 1;
+    }
+  }
   raw_.push_back(raw);
 
-  if (l.t_s - raw_.front().levelled.t_s < settings_.block_s) return;
-  // A full block: its first three quarters are good enough to give; the first half is then no longer needed.
-  const double begin_s = raw_.front().levelled.t_s;
-  std::size_t give = 0, drop = 0;
-  for (const Raw& r : raw_) {
-    if (r.levelled.t_s < begin_s + 0.5 * settings_.block_s) ++drop;
-    if (r.levelled.t_s < begin_s + 0.75 * settings_.block_s) ++give;
-  }
-  level(give, out);
-  q_start_ = raw_[drop].levelled.q_NB;
-  raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(drop));
-  given_ = give - drop;
+  const double begin_s = nodes_.front().begin_s;
+  if (l.t_s - begin_s < settings_.block_s) return;
+  const auto node_at = [&](double part) {
+    return std::find_if(nodes_.begin(), nodes_.end(),
+                        [&](const Node& n) { return n.begin_s >= begin_s + part * settings_.block_s; });
+  };
+  level(node_at(kGiven)->first, out);
+  const auto keep = node_at(kDropped);
+  q_start_ = keep->q_NB;
+  raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(keep->first - first_raw_));
+  first_raw_ = keep->first;
+  nodes_.erase(nodes_.begin(), keep);
 }
 
 void BlockLeveller::finish(std::deque<LevelledSample>& out) {
-  level(raw_.size(), out);
-  raw_.clear();
-  given_ = 0;
-}
-
-double BlockLeveller::integrate() {
-  Quaterniond q = q_start_;
-  const Vector3d* last_w = nullptr;
-  for (Raw& r : raw_) {
-    if (r.rotates) {
-      if (last_w) q = q * small_rotation((0.5 * (*last_w + r.w_B) - bias_B_) * r.dt_s);
-      last_w = &r.w_B;
-    }
-    r.levelled.q_NB = q;
-  }
-  return raw_.back().levelled.t_s - raw_.front().levelled.t_s;
+  level(first_raw_ + raw_.size(), out);
+  restart();
 }
 
 bool BlockLeveller::iterate() {
-  const double duration_s = integrate();
-  const double begin_s = raw_.front().levelled.t_s, taper_s = std::min(settings_.taper_s, 0.4 * duration_s);
-  const double g = settings_.gravity_mps2;
+  const double begin_s = nodes_.front().begin_s, g = settings_.gravity_mps2;
+  const double duration_s = nodes_.back().begin_s + nodes_.back().duration_s - begin_s;
+  const double taper_s = std::min(settings_.taper_s, 0.4 * duration_s);
 
   // Rows, small phi and f_N near (0, 0, -g): f_x - g phi_y = 0, f_y + g phi_x = 0; unknowns phi_x, phi_y, db.
   Matrix5 N = Matrix5::Zero();
   Vector5 b = Vector5::Zero();
   double weights = 0, squares = 0;
   Matrix3d turned = Matrix3d::Zero();                    // integral of R dt
-  Vector3d force_sum = Vector3d::Zero();
-  double count = 0, last_t_s = begin_s, node_s = begin_s;
-  const auto close_node = [&](double t_s) {
-    const Vector3d f_N = force_sum / count;
-    const double w = taper(t_s - begin_s, duration_s, taper_s);
-    Eigen::Matrix<double, 2, 5> H;
-    H << 0, -g, g * turned.row(1), g, 0, -g * turned.row(0);
-    N.noalias() += w * (H.transpose() * H);
-    b.noalias() -= w * (H.transpose() * f_N.head<2>());
-    weights += w;
-    squares += w * f_N.head<2>().squaredNorm();
-    force_sum.setZero();
-    count = 0;
-    node_s = t_s;
-  };
-  for (const Raw& r : raw_) {
-    if (!r.rotates) continue;
-    const Matrix3d R_NB = r.levelled.q_NB.toRotationMatrix();
-    turned += R_NB * (r.levelled.t_s - last_t_s);
-    last_t_s = r.levelled.t_s;
-    if (!r.levelled.usable) continue;
-    force_sum += R_NB * r.levelled.f_B;
-    ++count;
-    if (r.levelled.t_s - node_s >= kNodeInterval_s) close_node(r.levelled.t_s);
+  Quaterniond q = q_start_;
+  for (Node& node : nodes_) {
+    node.q_NB = q;
+    const Matrix3d R_NB = q.toRotationMatrix();
+    const Matrix3d half_turned = 0.5 * node.duration_s * R_NB;
+    turned += half_turned;
+    if (node.forces > 0) {
+      const Vector3d f = node.force_sum / node.forces;
+      const Vector3d f_N = R_NB * (f - 0.5 * node.duration_s * bias_B_.cross(f));
+      const double w = taper(node.begin_s - begin_s + 0.5 * node.duration_s, duration_s, taper_s);
+      Eigen::Matrix<double, 2, 5> H;
+      H << 0, -g, g * turned.row(1), g, 0, -g * turned.row(0);
+      N.noalias() += w * (H.transpose() * H);
+      b.noalias() -= w * (H.transpose() * f_N.head<2>());
+      weights += w;
+      squares += w * f_N.head<2>().squaredNorm();
+    }
+    turned += half_turned;
+    q = q * node.turn * small_rotation(-bias_B_ * node.duration_s);
   }
-  if (count > 0) close_node(last_t_s);
   if (weights <= 0) return true;
 
   // The prior of the bias against the block's own horizontal motion, taken as noise; the longer the block, the less
   // of the waves is left near zero frequency.
-  const double variance = std::max(0.5 * squares / weights, 1e-6), shorter = std::min(1.0, 10 / duration_s);
-  const double prior = variance * kMotionCorrelation_s * shorter * shorter / std::max(kNodeInterval_s, duration_s / weights) /
+  const double variance = std::max(0.5 * squares / weights, 1e-6);
+  const double shorter = std::min(1.0, 10 / std::max(duration_s, kNode_s));
+  const double prior = variance * kMotionCorrelation_s * shorter * shorter / kNode_s /
                        std::max(settings_.gyro_bias_sigma_radps * settings_.gyro_bias_sigma_radps, 1e-16);
   N.diagonal().tail<3>().array() += prior;
   b.tail<3>() -= prior * bias_B_;
@@ -142,35 +146,43 @@ bool BlockLeveller::iterate() {
   return x.head<2>().norm() < kConverged_rad && x.tail<3>().norm() * duration_s < kConverged_rad;
 }
 
-void BlockLeveller::level(std::size_t count, std::deque<LevelledSample>& out) {
-  if (raw_.empty()) return;
-  if (!has_attitude_) {
-    // Start: the mean rate is the bias (a platform keeps its attitude), the mean of the first seconds is up.
-    Vector3d rate = Vector3d::Zero(), force = Vector3d::Zero();
-    double rates = 0;
-    for (const Raw& r : raw_) {
-      if (!r.rotates) continue;
-      rate += r.w_B;
-      ++rates;
-      if (r.levelled.usable && r.levelled.t_s < raw_.front().levelled.t_s + 0.1 * settings_.block_s) {
-        force += r.levelled.f_B;
-      }
-    }
-    if (rates > 0 && force.norm() > 0) {
-      bias_B_ = rate / rates;
-      q_start_ = Quaterniond::FromTwoVectors(force, -Vector3d::UnitZ());
-      has_attitude_ = true;
+// Start: the mean rate is the bias (a platform keeps its attitude), the mean of the first seconds is up.
+void BlockLeveller::guess_attitude() {
+  Vector3d turn = Vector3d::Zero(), force = Vector3d::Zero();
+  double duration_s = 0;
+  for (const Raw& r : raw_) {
+    turn += r.turn_B;
+    duration_s += r.dt_s;
+    if (r.levelled.usable && r.levelled.t_s < nodes_.front().begin_s + 0.1 * settings_.block_s) {
+      force += r.levelled.f_B;
     }
   }
+  if (force.norm() <= 0) return;
+  bias_B_ = duration_s > 0 ? Vector3d(turn / duration_s) : Vector3d::Zero();
+  q_start_ = Quaterniond::FromTwoVectors(force, -Vector3d::UnitZ());
+  has_attitude_ = true;
+}
+
+void BlockLeveller::level(std::size_t until, std::deque<LevelledSample>& out) {
+  if (raw_.empty()) return;
+  if (!has_attitude_) guess_attitude();
   for (int i = 0; has_attitude_ && i < kMostIterations && !iterate(); ++i) {
   }
-  integrate();
-  for (std::size_t i = given_; i < count; ++i) {
-    LevelledSample& l = raw_[i].levelled;
-    l.up_mps2 = -(l.q_NB * l.f_B).z() - settings_.gravity_mps2;
-    out.push_back(l);
+  for (std::size_t n = 0; n < nodes_.size() && nodes_[n].first < until; ++n) {
+    const std::size_t end = n + 1 < nodes_.size() ? nodes_[n + 1].first : first_raw_ + raw_.size();
+    if (end <= given_) continue;
+    Quaterniond q = nodes_[n].q_NB;
+    for (std::size_t i = nodes_[n].first; i < std::min(end, until); ++i) {
+      Raw& r = raw_[i - first_raw_];
+      if (r.dt_s > 0) q = q * small_rotation(r.turn_B - bias_B_ * r.dt_s);
+      if (i < given_) continue;
+      LevelledSample& l = r.levelled;
+      l.q_NB = q;
+      l.up_mps2 = -(q * l.f_B).z() - settings_.gravity_mps2;
+      out.push_back(l);
+    }
   }
-  given_ = count;
+  given_ = std::max(given_, until);
 }
 
 }  // namespace waverig::estimator

@@ -8,6 +8,8 @@
 //
 // iterated (the first block may lean by tens of degrees). The taper keeps the cut waves at the block's ends from
 // leaning the frame. Heading starts at nought and drifts: N is a level frame that turns slowly.
+// Samples are gathered into nodes of a tenth of a second, rotation and force relative to the node's start, so that
+// iterating costs next to nothing; each sample's own attitude is integrated once, when it is given.
 #pragma once
 #include <deque>
 #include <vector>
@@ -41,7 +43,7 @@ class BlockLeveller {
   explicit BlockLeveller(const BlockLevellerSettings& settings) : settings_(settings) {}
 
   // Samples as they come, with what the guard says of them; levelled ones are appended to out, each sample once and
-  // in order, later by half a block or more.
+  // in order, later by a fifth of a block or more.
   void add(const ImuSample& sample, const GuardVerdict& verdict, std::deque<LevelledSample>& out);
   void finish(std::deque<LevelledSample>& out);
 
@@ -50,21 +52,31 @@ class BlockLeveller {
  private:
   struct Raw {
     LevelledSample levelled;
-    Vector3d w_B;
-    double dt_s;                  // since the usable sample before
-    bool rotates;                 // w_B is good
+    Vector3d turn_B = Vector3d::Zero();       // since the sample before, gyro bias included
+    double dt_s = 0;                          // of the turn; 0: none
   };
-  void level(std::size_t count, std::deque<LevelledSample>& out);
-  bool iterate();                 // one Gauss-Newton step; true once it no longer moves
-  double integrate();             // attitude along the block; returns its duration
+  struct Node {
+    std::size_t first = 0;                    // sample it begins with, counted from the record's first
+    double begin_s = 0, duration_s = 0;
+    Quaterniond turn = Quaterniond::Identity();   // from its start to its end, gyro bias included
+    Vector3d force_sum = Vector3d::Zero();    // in the frame of its start
+    double forces = 0;
+    Quaterniond q_NB = Quaterniond::Identity();   // at its start
+  };
+  void level(std::size_t until, std::deque<LevelledSample>& out);
+  void guess_attitude();
+  bool iterate();                             // one Gauss-Newton step; true once it no longer moves
+  void restart();
 
   BlockLevellerSettings settings_;
-  std::deque<Raw> raw_;
-  std::size_t given_ = 0;         // samples at the front of raw_ that have been given out already
-  bool started_ = false, has_attitude_ = false;
+  std::deque<Raw> raw_;                       // samples from first_raw_ on
+  std::deque<Node> nodes_;
+  std::size_t first_raw_ = 0, given_ = 0;     // counted from the record's first sample
+  bool started_ = false, has_rate_ = false, has_attitude_ = false;
   std::int64_t first_utime_ = 0;
   double last_t_s_ = 0;
-  Quaterniond q_start_ = Quaterniond::Identity();   // at raw_.front()
+  Vector3d last_w_B_ = Vector3d::Zero();
+  Quaterniond q_start_ = Quaterniond::Identity();   // at nodes_.front()
   Vector3d bias_B_ = Vector3d::Zero();
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "estimator/waves/height_budget.h"
@@ -13,6 +14,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::size_t kNeighbours = 4;   // on either side: noise and mean force are told together
+constexpr std::size_t kEvenly = 4;       // waves that share one frequency run evenly
 
 // Calls visit(wave j) for k and its unbroken neighbours, as far as kNeighbours.
 template <class Visit>
@@ -109,13 +111,18 @@ void refit(const WaveSeries& series, std::vector<RegularWave>& waves) {
 void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves, std::size_t k,
                  const RegularWaveSettings& settings, const SensorKnowledge& knowledge, RegularWave& wave) {
   const double w = wave.fit.omega_radps, sigma = amplitude_sigma(wave), raw = wave.fit.amplitude_mps2();
-  double mean_up = 0, count = 0;
+  // Only waves that run evenly have no mean acceleration of their own.
+  double mean_up = 0, seconds = 0;
   for_neighbours(waves, k, [&](const RegularWave& other) {
-    mean_up += other.fit.offset_mps2;
-    count += 1;
+    const double ratio = other.timing.period_s / wave.timing.period_s;
+    if (other.timing.waves < kEvenly || std::abs(ratio - 1) > settings.settled_period) return;
+    mean_up += other.fit.offset_mps2 * other.timing.period_s;
+    seconds += other.timing.period_s;
   });
-  const double mean_sigma = wave.noise_density / std::sqrt(2 * count * wave.timing.period_s);
-  const AmplitudeBudget budget = amplitude_budget(series, wave.fit, knowledge, mean_up / count, mean_sigma);
+  const double mean_sigma =
+      seconds > 0 ? wave.noise_density / std::sqrt(2 * seconds) : std::numeric_limits<double>::infinity();
+  if (seconds > 0) mean_up /= seconds;
+  const AmplitudeBudget budget = amplitude_budget(series, wave.fit, knowledge, mean_up, mean_sigma);
   // Noise across the phase only ever lengthens the amplitude: E[A^2] = A0^2 + sigma^2 from that side.
   const double amplitude = std::sqrt(std::max(0.0, raw * raw - sigma * sigma)) - budget.correction_mps2;
   const double height_per_amplitude = 2 / (w * w);
