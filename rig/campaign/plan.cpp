@@ -23,7 +23,17 @@ motion::EnvelopeSettings envelope_of(const CampaignSettings& settings) {
   return envelope;
 }
 
+SettingPlan plan_sea(const CampaignSettings& campaign, const Setting& setting) {
+  SettingPlan plan{.setting = setting, .judgements = {}, .duration_s = campaign.sweep.profile.steady_s};
+  if (const auto steep = motion::too_steep(setting.period_s, setting.height_m)) {
+    plan.judgements.push_back({motion::EnvelopeReason::kBreaks, motion::Verdict::kRefuse, *steep});
+    plan.refused = true;
+  }
+  return plan;
+}
+
 SettingPlan plan_setting(const CampaignSettings& campaign, const Setting& setting) {
+  if (campaign.sweep.mover == Mover::kSea) return plan_sea(campaign, setting);
   SettingPlan plan{.setting = setting, .judgements = {}};
   motion::ProfileSettings profile = campaign.sweep.profile;
   profile.period_s = setting.period_s;

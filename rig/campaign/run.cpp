@@ -12,6 +12,7 @@
 #include "rig/nodes/motion_node.h"
 #include "rig/nodes/recorder_node.h"
 #include "rig/nodes/simulated_rig.h"
+#include "rig/nodes/simulated_sea.h"
 
 namespace waverig::rig {
 namespace {
@@ -25,16 +26,52 @@ SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const Campai
   return rig;
 }
 
+SimulatedSeaSettings sea_settings(const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan) {
+  SimulatedSeaSettings sea{.sea = campaign.sweep.sea, .buoy = campaign.sweep.buoy, .unit = unit.settings};
+  sea.sea.tp_s = plan.setting.period_s;
+  sea.sea.hm0_m = plan.setting.height_m;
+  sea.sea.seed = sea.buoy.seed = sea.noise_seed = plan.seed;
+  sea.buoy.start_utime = plan.start_utime;
+  sea.duration_s = plan.duration_s;
+  return sea;
+}
+
 motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPlan& plan) {
   motion::ProfileSettings profile = campaign.sweep.profile;
   profile.period_s = plan.setting.period_s;
   return motion::RotationProfile(profile);
 }
 
+OrderedRun ordered(const RunPlan& plan) { return {plan.setting.period_s, plan.setting.height_m, plan.repeat}; }
+
 Acquisition acquisition_of(const CampaignUnit& unit) {
   Acquisition acquisition(unit.sensitivities);
   if (unit.calibrated) acquisition.apply(unit.calibration.accelerometer, unit.calibration.gyroscope);
   return acquisition;
+}
+
+void turn_arm(Bus& bus, const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan,
+              AcquisitionNode& acquisition) {
+  SimulatedRig rig(bus, rig_settings(campaign, unit, plan), unit.tested, plan.start_utime);
+  MotionNode motion(bus, rig.drive(), campaign.axis, profile_of(campaign, plan), ordered(plan));
+  const double period_s = campaign.axis.control_period_s;
+  const auto period_us = static_cast<std::int64_t>(period_s * 1e6);
+  for (std::int64_t utime = plan.start_utime; !motion.finished(); utime += period_us) {
+    motion.cycle(utime);
+    acquisition.take(rig.advance(period_s));
+    bus.drain();
+  }
+  if (!motion.alarm().empty())
+    throw NegativeAnswer(fmt::format("run {}: motion stopped by an alarm: {}", plan.name, motion.alarm()));
+}
+
+void float_on_sea(Bus& bus, const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan,
+                  AcquisitionNode& acquisition) {
+  SimulatedSea sea(bus, sea_settings(campaign, unit, plan), unit.tested, plan.start_utime, ordered(plan));
+  while (!sea.finished()) {
+    acquisition.take(sea.advance(unit.settings.sample_interval_s));
+    bus.drain();
+  }
 }
 
 }  // namespace
@@ -50,25 +87,14 @@ std::vector<evaluation::RunResult> run_embedded(const CampaignSettings& campaign
   std::optional<RecorderNode> recorder;
   if (!log.empty()) recorder.emplace(bus, log);
 
-  SimulatedRig rig(bus, rig_settings(campaign, unit, plan), unit.tested, plan.start_utime);
-  MotionNode motion(bus, rig.drive(), campaign.axis, profile_of(campaign, plan),
-                    {plan.setting.period_s, plan.setting.height_m, plan.repeat});
   AcquisitionNode acquisition(bus, acquisition_of(unit));
   std::vector<std::unique_ptr<EstimatorNode>> estimators;
   for (const std::string& method : campaign.methods)
     estimators.push_back(std::make_unique<EstimatorNode>(bus, method, unit.methods));
   EvaluatorNode evaluator(bus, plan.name, judge_settings(unit));
 
-  const double control_period_s = campaign.axis.control_period_s;
-  const auto control_period_us = static_cast<std::int64_t>(control_period_s * 1e6);
-  for (std::int64_t utime = plan.start_utime; !motion.finished(); utime += control_period_us) {
-    motion.cycle(utime);
-    acquisition.take(rig.advance(control_period_s));
-    bus.drain();
-  }
-  bus.drain();
-  if (!motion.alarm().empty())
-    throw NegativeAnswer(fmt::format("run {}: motion stopped by an alarm: {}", plan.name, motion.alarm()));
+  campaign.sweep.mover == Mover::kArm ? turn_arm(bus, campaign, unit, plan, acquisition)
+                                      : float_on_sea(bus, campaign, unit, plan, acquisition);
   if (recorder) recorder->close();
   return evaluator.finish();
 }

@@ -13,8 +13,23 @@ namespace {
 // 2026-01-01T00:00:00Z: virtual time begins somewhere; a laboratory's campaign has the time of its frames.
 constexpr std::int64_t kVirtualStart_utime = 1767225600LL * 1000000LL;
 
+void read_sea(TomlTable sea, SweepSettings& s) {
+  s.sea.gamma = sea.number("gamma", s.sea.gamma, {1, 10});
+  s.sea.direction_from_rad = sea.number("direction_from_deg", 0, {-360, 360}) * kDegree;
+  s.sea.spreading_s = sea.number("spreading_s", s.sea.spreading_s, {0, 1000});
+  s.sea.components = static_cast<int>(sea.integer("components", s.sea.components, {1, 5000}));
+  s.sea.random_amplitudes = sea.boolean("random_amplitudes", s.sea.random_amplitudes);
+  s.buoy.slope_following = sea.number("slope_following", s.buoy.slope_following, {0, 2});
+  s.buoy.heading_rad = sea.number("heading_deg", 0, {-360, 360}) * kDegree;
+  s.buoy.tilt_rad = sea.number("tilt_deg", 0, {0, 45}) * kDegree;
+  s.buoy.tilt_period_s = sea.number("tilt_period_s", s.buoy.tilt_period_s, {0, 3600});
+}
+
 SweepSettings read_sweep(TomlTable sweep) {
   SweepSettings s;
+  const std::string motion = sweep.choice("motion", "arm", {"arm", "jonswap", "pierson-moskowitz"});
+  s.mover = motion == "arm" ? Mover::kArm : Mover::kSea;
+  s.sea.shape = motion == "pierson-moskowitz" ? motion::SpectrumShape::kPiersonMoskowitz : motion::SpectrumShape::kJonswap;
   const auto periods = sweep.numbers("periods_s", std::nullopt, {0.5, 60});
   const auto heights = sweep.numbers("heights_cm", std::nullopt, {0.1, 2000});
   for (const double period : periods)
@@ -102,6 +117,7 @@ Campaign read_campaign(TomlFile file, const std::uint64_t* seed_override) {
       root.refuse("methods", fmt::format("names among \"{}\"", fmt::join(known, "\", \"")));
   }
   s.sweep = read_sweep(root.table("sweep"));
+  if (s.sweep.mover == Mover::kSea) read_sea(root.table("sea"), s.sweep);
   s.place = read_place(root.table("place"));
   TomlTable rig = root.table("rig");
   s.arm = read_arm(rig, gravity_mps2(s.place));

@@ -11,6 +11,7 @@
 #include "motion/envelope.h"
 #include "motion/kinematics/earth.h"
 #include "motion/profile.h"
+#include "motion/sea_state.h"
 #include "motion/simulated_drive.h"
 #include "rig/acquisition/calibration_run.h"
 #include "rig/mechanism/rotating_arm.h"
@@ -23,13 +24,18 @@ struct Setting {
   double height_m = 0;
 };
 
+enum class Mover { kArm, kSea };                 // the rotating arm, or a buoy on an irregular sea
+
 enum class OutsideEnvelope { kRefuse, kSkip };   // what happens to settings that cannot be made or measured
 
 struct SweepSettings {
-  std::vector<Setting> settings;                 // by period, then height
+  Mover mover = Mover::kArm;
+  std::vector<Setting> settings;                 // by period, then height; on a sea peak period and Hm0
   std::string settings_place;                    // FILE:LINE of the heights, for complaints
   int repeats = 1;
-  motion::ProfileSettings profile;               // of every run; the period is the setting's
+  motion::ProfileSettings profile;               // of every run on the arm; the period is the setting's
+  motion::SeaSettings sea;                       // of every run on a sea; Tp, Hm0 and seed are the run's
+  motion::FloatSettings buoy;
   OutsideEnvelope outside = OutsideEnvelope::kRefuse;
 };
 

@@ -14,16 +14,21 @@ EstimatorNode::EstimatorNode(Bus& bus, std::string method, const estimator::Meth
       heave_channel_(channel::of_method(channel::kHeavePrefix, name_)),
       wave_channel_(channel::of_method(channel::kWavePrefix, name_)),
       sea_channel_(channel::of_method(channel::kSeaPrefix, name_)),
-      settings_(settings),
-      method_(estimator::make_method(name_, settings_)) {
-  bus_.subscribe<imu_t>(channel::kImu, [this](const imu_t& m) { method_->add(estimator::sample_of(m), *this); });
+      settings_(settings) {
+  estimator::make_method(name_, settings_);   // an unknown name is refused now, not at the first record
+  bus_.subscribe<imu_t>(channel::kImu, [this](const imu_t& m) {
+    if (method_) method_->add(estimator::sample_of(m), *this);
+  });
   bus_.subscribe<record_t>(channel::kRecord, [this](const record_t& m) {
     m.action == static_cast<std::int32_t>(RecordAction::kBegin) ? begin() : end();
   });
 }
 
 void EstimatorNode::begin() { method_ = estimator::make_method(name_, settings_); }
-void EstimatorNode::end() { method_->finish(*this); }
+void EstimatorNode::end() {
+  if (method_) method_->finish(*this);
+  method_.reset();
+}
 void EstimatorNode::heave(const estimator::HeaveSample& sample) { bus_.publish(heave_channel_, message_of(sample)); }
 void EstimatorNode::wave(const estimator::Wave& wave) { bus_.publish(wave_channel_, message_of(wave)); }
 void EstimatorNode::sea(const estimator::SeaState& sea) { bus_.publish(sea_channel_, message_of(sea)); }

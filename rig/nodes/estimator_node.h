@@ -24,7 +24,7 @@ class EstimatorNode : private estimator::Output {
   Bus& bus_;
   std::string name_, heave_channel_, wave_channel_, sea_channel_;
   estimator::MethodSettings settings_;
-  std::unique_ptr<estimator::Method> method_;
+  std::unique_ptr<estimator::Method> method_;   // of the record that runs; none between records
 };
 
 }  // namespace waverig::rig

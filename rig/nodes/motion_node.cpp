@@ -4,8 +4,6 @@
 #include <cstring>
 #include <waverig/alarm_t.hpp>
 #include <waverig/axis_t.hpp>
-#include <waverig/record_t.hpp>
-#include <waverig/run_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/phase.h"
@@ -19,7 +17,7 @@ constexpr std::int64_t kStatusPeriod_utime = 100000;   // between two axis_t whe
 
 MotionNode::MotionNode(Bus& bus, motion::Drive& drive, const motion::AxisSettings& axis,
                        const motion::RotationProfile& profile, const OrderedRun& ordered)
-    : bus_(bus), controller_(drive, axis), profile_(profile), ordered_(ordered) {
+    : bus_(bus), controller_(drive, axis), profile_(profile), announce_(bus, ordered) {
   controller_.enable();
 }
 
@@ -30,9 +28,9 @@ void MotionNode::cycle(std::int64_t utime) {
     started_ = true;
     const auto period_us = static_cast<std::int64_t>(controller_.settings().control_period_s * 1e6);
     controller_.start(profile_, utime + period_us);
-    publish_record(utime + period_us, RecordAction::kBegin);
+    announce_.record(utime + period_us, RecordAction::kBegin);
   }
-  if (started_ && !finished_) announce_phase(utime);
+  if (started_ && !finished_) announce_.phase(utime, status.phase);
   publish_status(utime);
   if (finished_) return;
   const bool alarmed = status.alarm != motion::Alarm::kNone;
@@ -40,22 +38,8 @@ void MotionNode::cycle(std::int64_t utime) {
   if (alarmed || status.runs_finished > 0) {
     finished_ = true;
     controller_.stop();
-    if (started_) publish_record(utime, RecordAction::kEnd);
+    if (started_) announce_.record(utime, RecordAction::kEnd);
   }
-}
-
-void MotionNode::announce_phase(std::int64_t utime) {
-  const Phase phase = controller_.status().phase;
-  if (phase == phase_) return;
-  phase_ = phase;
-  run_t m{};
-  m.utime = utime;
-  m.seq = run_seq_++;
-  m.phase = static_cast<std::int32_t>(phase);
-  m.repeat = ordered_.repeat;
-  m.period_s = ordered_.period_s;
-  m.height_m = ordered_.height_m;
-  bus_.publish(channel::kRun, m);
 }
 
 void MotionNode::publish_status(std::int64_t utime) {
@@ -74,14 +58,6 @@ void MotionNode::publish_status(std::int64_t utime) {
   m.peak_following_error_rad = status.peak_following_error_rad;
   m.torque_ratio = status.torque_ratio;
   bus_.publish(channel::kAxis, m);
-}
-
-void MotionNode::publish_record(std::int64_t utime, RecordAction action) {
-  record_t m{};
-  m.utime = utime;
-  m.seq = record_seq_++;
-  m.action = static_cast<std::int32_t>(action);
-  bus_.publish(channel::kRecord, m);
 }
 
 void MotionNode::publish_alarm(std::int64_t utime) {

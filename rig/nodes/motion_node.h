@@ -6,14 +6,9 @@
 
 #include "lcmtypes/bus.h"
 #include "motion/axis_controller.h"
+#include "rig/nodes/run_announcer.h"
 
 namespace waverig::rig {
-
-struct OrderedRun {
-  double period_s = 0;
-  double height_m = 0;
-  int repeat = 0;
-};
 
 class MotionNode {
  public:
@@ -29,18 +24,15 @@ class MotionNode {
   const motion::AxisStatus& status() const { return controller_.status(); }
 
  private:
-  void announce_phase(std::int64_t utime);
   void publish_status(std::int64_t utime);
-  void publish_record(std::int64_t utime, RecordAction action);
   void publish_alarm(std::int64_t utime);
 
   Bus& bus_;
   motion::AxisController controller_;
   motion::RotationProfile profile_;
-  OrderedRun ordered_;
-  Phase phase_ = Phase::kStopped;
+  RunAnnouncer announce_;
   motion::AxisState published_state_ = motion::AxisState::kIdle;
-  std::int64_t axis_seq_ = 0, run_seq_ = 0, record_seq_ = 0, alarm_seq_ = 0, next_status_utime_ = 0;
+  std::int64_t axis_seq_ = 0, alarm_seq_ = 0, next_status_utime_ = 0;
   bool started_ = false, finished_ = false;
 };
 
