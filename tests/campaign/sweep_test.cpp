@@ -28,7 +28,9 @@ Outcome sweep(const Campaign& campaign, const std::filesystem::path& out, int jo
   ResultsDirectory directory(out, mode);
   directory.claim(campaign.resolved);
   const CalibratedUnit calibrated = calibrate(campaign.settings);
-  outcome.results = run_campaign(campaign, calibrated.unit, outcome.runs, directory, {.jobs = jobs});
+  SweepOptions options;
+  options.jobs = jobs;
+  outcome.results = run_campaign(campaign, calibrated.unit, outcome.runs, directory, options);
   evaluation::write_results(directory.working(), outcome.results);
   directory.finish();
   return outcome;
