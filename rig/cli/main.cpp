@@ -17,6 +17,17 @@ int fail(ExitStatus status, const char* message) {
   return status;
 }
 
+// CLI11 tells of a missing command where the one given is unknown.
+void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::string known;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->check_name(argv[1])) return;
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  }
+  throw waverig::UserError(std::string("\"") + argv[1] + "\" is no command; expected one of " + known);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -36,6 +47,7 @@ int main(int argc, char** argv) {
   for (const auto add : cli::kCommands) add(app, chosen);
 
   try {
+    refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     return chosen();
   } catch (const CLI::ParseError& error) {

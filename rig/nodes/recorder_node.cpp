@@ -1,5 +1,6 @@
 #include "rig/nodes/recorder_node.h"
 
+#include <algorithm>
 #include <string>
 
 namespace waverig::rig {
@@ -23,7 +24,8 @@ std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix
 RecorderNode::RecorderNode(Bus& bus, const std::filesystem::path& path)
     : path_(path), part_(with_suffix(path, ".part")), writer_(part_) {
   bus.subscribe_raw(".*", [this](std::string_view channel, const void* data, std::size_t size) {
-    writer_.write(utime_of(data, size), channel, data, size);
+    latest_utime_ = std::max(latest_utime_, utime_of(data, size));
+    writer_.write(latest_utime_, channel, data, size);
   });
 }
 

@@ -1,4 +1,5 @@
-// RecorderNode: writes everything on the bus into an LCM event log, each event at its message's own utime.
+// RecorderNode: writes everything on the bus into an LCM event log. An event's time is the latest utime of any message
+// so far: what speaks of the past (a wave, of its start) stands where it was said, and time never runs back.
 // A recorder of our own, since lcm-logger loses events in a burst and at its end.
 #pragma once
 #include <cstdint>
@@ -18,6 +19,7 @@ class RecorderNode {
 
  private:
   std::filesystem::path path_, part_;
+  std::int64_t latest_utime_ = 0;
   EventLogWriter writer_;
 };
 

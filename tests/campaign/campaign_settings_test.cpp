@@ -50,8 +50,8 @@ TEST(CampaignSettings, ComplaintsNameFileLineKeyValueAndWhatWasExpected) {
   EXPECT_EQ(complaint(std::string(kMinimal) + "repeats = 0\n"),
             "c.toml:5: sweep.repeats = 0: expected a whole number, a number from 1 to 10000");
   EXPECT_EQ(complaint(std::string(kMinimal) + "speed = 1\n").substr(0, 43), "c.toml:5: sweep.speed = 1: unknown key; exp");
-  EXPECT_EQ(complaint(std::string("methods = [\"magic\"]\n") + kMinimal).substr(0, 58),
-            "c.toml:1: methods = [ 'magic' ]: expected names among \"har");
+  EXPECT_TRUE(complaint(std::string("methods = [\"magic\"]\n") + kMinimal)
+                  .starts_with("c.toml:1: methods = [ 'magic' ]: expected names among \"lee2014\", "));
 }
 
 }  // namespace

@@ -75,11 +75,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"WrongType", "sweep wrong_type.toml --out out", "wrong_type.toml:8: sweep.rest_before_s = 'long'"},
         BadCall{"TooHigh", "sweep too_high.toml --out out", "too_high.toml:4: sweep.heights_cm = 900"},
         BadCall{"BadShard", "sweep too_high.toml --out out --shard 3/2", "--shard 3/2"},
-        BadCall{"BrokenRow", "estimate broken_row.csv --out out", "broken_row.csv:3"},
-        BadCall{"NoHeader", "estimate no_header.csv --out out", "no_header.csv:1"},
+        BadCall{"BrokenRow", "estimate broken_row.csv --out out", "broken_row.csv, line 3, column az: 'x'"},
+        BadCall{"NoHeader", "estimate no_header.csv --out out", "no_header.csv, line 1"},
         BadCall{"TruncatedLog", "estimate truncated.lcm --out out", "truncated.lcm"},
         BadCall{"UnknownMethod", "estimate broken_row.csv --method magic --out out", "magic"},
-        BadCall{"TimeStandsStill", "evaluate heave.csv --out out", "heave.csv:3"}),
+        BadCall{"TimeStandsStill", "evaluate heave.csv --out out", "heave.csv, line 3, column utime"}),
     [](const auto& instance) { return instance.param.name; });
 
 TEST(Program, SweepWritesEverythingAResultsDirectoryHolds) {

@@ -97,8 +97,8 @@ TEST(Sweep, LogIsReadByTheStockLibraryAndHoldsEveryChannel) {
   std::int64_t last_utime = 0;
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     ++events[event->channel];
-    EXPECT_GE(event->timestamp, last_utime - 20000000) << "virtual time runs on";
-    last_utime = std::max(last_utime, event->timestamp);
+    EXPECT_GE(event->timestamp, last_utime) << "virtual time runs on";
+    last_utime = event->timestamp;
   }
   for (const char* channel : {"WAVERIG_IMU", "WAVERIG_COUNTS", "WAVERIG_TRUTH", "WAVERIG_AXIS", "WAVERIG_RUN", "WAVERIG_RECORD",
                               "WAVERIG_HEAVE_lee2014", "WAVERIG_WAVE_lee2014", "WAVERIG_WAVE_harmonic"})
