@@ -4,6 +4,7 @@
 
 #include "estimator/heave/realtime.h"
 #include "estimator/heave/smoothed.h"
+#include "estimator/heave/spectral.h"
 #include "estimator/waves/harmonic.h"
 #include "estimator/waves/lee2014.h"
 #include "lcmtypes/error.h"
@@ -27,6 +28,7 @@ constexpr std::array kMethods{
     Entry{"harmonic", make<Harmonic>},
     Entry{"realtime", make<Realtime>},
     Entry{"smoothed", make<Smoothed>},
+    Entry{"spectral", make<Spectral>},
 };
 
 }  // namespace

@@ -31,6 +31,11 @@ Predictors levinson(const Eigen::VectorXd& r) {
   return p;
 }
 
+void SeaModel::set_noise(double density_m2ps3) {
+  accel_noise_m2ps3 = density_m2ps3;
+  bias_walk_m2ps5 = density_m2ps3 * kBiasCorner_radps * kBiasCorner_radps;
+}
+
 SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, int order) {
   const Eigen::Index n = density.size() - 1;
   SeaModel model;
@@ -61,8 +66,7 @@ SeaModel unknown_sea(int order, double accel_noise_m2ps3) {
   }
   density *= kUnknownSea_m2 / (2 * df * density.sum());
   SeaModel model = model_of_density(density, df, order);
-  model.accel_noise_m2ps3 = accel_noise_m2ps3;
-  model.bias_walk_m2ps5 = accel_noise_m2ps3 * kBiasCorner_radps * kBiasCorner_radps;
+  model.set_noise(accel_noise_m2ps3);
   return model;
 }
 

@@ -21,6 +21,7 @@ struct SeaModel {
   double bias_walk_m2ps5 = 0;         // two-sided density of n_b
   double mean_frequency_radps = 0;    // sqrt(m2/m0) of heave
 
+  void set_noise(double accel_noise_m2ps3);  // and the walk that goes with it
   int order() const { return static_cast<int>(ar.size()); }
   double heave_variance_m2() const { return autocovariance_m2[0]; }
 };

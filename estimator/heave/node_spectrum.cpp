@@ -1,0 +1,94 @@
+#include "estimator/heave/node_spectrum.h"
+
+#include <fftw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace waverig::estimator {
+namespace {
+
+constexpr double kStandsOut = 6;        // times the noise: there is sea
+constexpr double kLowestSea_hz = 0.02;  // longer waves are no wind sea nor swell
+constexpr double kQuiet_hz = 0.12;      // somewhere below it there is no sea
+
+}  // namespace
+
+struct Periodogram::Transform {
+  explicit Transform(int block)
+      : n(block),
+        in(fftw_alloc_real(static_cast<std::size_t>(n))),
+        out(fftw_alloc_complex(static_cast<std::size_t>(n / 2 + 1))),
+        plan(fftw_plan_dft_r2c_1d(n, in, out, FFTW_ESTIMATE)) {}
+  ~Transform() {
+    fftw_destroy_plan(plan);
+    fftw_free(out);
+    fftw_free(in);
+  }
+  Transform(const Transform&) = delete;
+  Transform& operator=(const Transform&) = delete;
+  int n;
+  double* in;
+  fftw_complex* out;
+  fftw_plan plan;
+};
+
+Periodogram::Periodogram(int block)
+    : transform_(std::make_unique<Transform>(block)), density_(block / 2 + 1) {}
+
+Periodogram::~Periodogram() = default;
+
+double Periodogram::window(std::size_t i, std::size_t n) {
+  return 1 - std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
+}
+
+const Eigen::VectorXd& Periodogram::of(std::span<const double> values, double dt_s) {
+  double mean = 0, power = 0;
+  for (const double x : values) mean += x / static_cast<double>(values.size());
+  std::fill(transform_->in, transform_->in + transform_->n, 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double w = window(i, values.size());
+    transform_->in[i] = w * (values[i] - mean);
+    power += w * w;
+  }
+  fftw_execute(transform_->plan);
+  for (Eigen::Index i = 0; i < density_.size(); ++i) {
+    const fftw_complex& c = transform_->out[i];
+    density_[i] = dt_s * (c[0] * c[0] + c[1] * c[1]) / power;
+  }
+  return density_;
+}
+
+SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, double nominal_noise_m2ps3) {
+  const Eigen::Index bins = density.size();
+  const double step = std::numbers::pi / static_cast<double>(bins - 1),
+               df_hz = step / (2 * std::numbers::pi * dt_s);
+  Eigen::VectorXd noise(bins), level(bins);  // of unit q; and X in terms of q, lightly smoothed
+  for (Eigen::Index i = 0; i < bins; ++i)
+    noise[i] = std::pow(dt_s, 4) * (2 + std::cos(step * static_cast<double>(i))) / 3;
+  const Eigen::VectorXd raw = density.cwiseQuotient(noise);
+  for (Eigen::Index i = 0; i < bins; ++i) {
+    const Eigen::Index a = std::max<Eigen::Index>(i - 1, 1), b = std::min(i + 1, bins - 1);
+    level[i] = raw.segment(a, b - a + 1).mean();
+  }
+  const auto bin_of = [&](double f_hz) {
+    return std::clamp<Eigen::Index>(std::lround(f_hz / df_hz), 3, bins - 2);
+  };
+  const double quiet =
+      std::max(level.segment(2, bin_of(kQuiet_hz) - 1).minCoeff(), 1e-3 * nominal_noise_m2ps3);
+  const auto stands_out = [&](Eigen::Index i) { return level[i] > kStandsOut * quiet; };
+  Eigen::Index first = bin_of(kLowestSea_hz);
+  while (first < bins - 1 && !(stands_out(first) && stands_out(first + 1))) ++first;
+
+  SeaAndNoise split;
+  split.first_bin = std::max<Eigen::Index>(first - 1, 3);
+  split.noise_m2ps3 = std::max(raw.segment(2, split.first_bin - 2).mean(), 0.05 * nominal_noise_m2ps3);
+  split.heave_density_m2s.setZero(bins);
+  for (Eigen::Index i = split.first_bin; i < bins; ++i)
+    split.heave_density_m2s[i] = std::max(density[i] - split.noise_m2ps3 * noise[i], 0.0) /
+                                 std::pow(2 - 2 * std::cos(step * static_cast<double>(i)), 2);
+  return split;
+}
+
+}  // namespace waverig::estimator
