@@ -75,6 +75,7 @@ void Harmonic::finish(Output& output) {
 }
 
 void Harmonic::gather() {
+  series_.set_sample_interval(guard_.usual_interval_s());
   for (; gathered_ < levelled_.size(); ++gathered_) series_.add(levelled_[gathered_]);
 }
 

@@ -164,8 +164,8 @@ std::vector<RegularWave> regular_waves(const WaveSeries& series, double period_s
     refit(series, waves);
   }
   keep(waves, [&](const RegularWave& wave) {
-    return wave.fit.valid && wave.begin_s() >= series.begin_s() - WaveSeries::kBin_s &&
-           wave.end_s() <= series.end_s() + WaveSeries::kBin_s;
+    return wave.fit.valid && wave.begin_s() >= series.begin_s() - series.bin_s() &&
+           wave.end_s() <= series.end_s() + series.bin_s();
   });
   pool_noise(waves);
   std::vector<RegularWave> result = waves;

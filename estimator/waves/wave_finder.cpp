@@ -48,7 +48,7 @@ std::optional<double> dominant_period_s(const WaveSeries& series, const WaveFind
   std::vector<std::complex<double>> spectrum;
   fft.fwd(spectrum, signal);
 
-  const double df = 1 / (WaveSeries::kBin_s * static_cast<double>(padded));
+  const double df = 1 / (series.bin_s() * static_cast<double>(padded));
   const auto low = static_cast<std::size_t>(std::ceil(1 / (settings.longest_period_s * df)));
   const auto high = std::min(spectrum.size() - 2, static_cast<std::size_t>(1 / (settings.shortest_period_s * df)));
   if (low < 1 || low + 3 > high) return std::nullopt;
@@ -101,7 +101,7 @@ std::vector<WaveSpan> find_waves(const WaveSeries& series, double period_s) {
       const Eigen::Vector4d row(cosine[i], sine[i], 1.0, tau);
       N.noalias() += weight * row * row.transpose();
       y.noalias() += weight * bins[i].up_mps2 * row;
-      if (std::abs(bins[i].t_s - t_s) < 0.25 * period_s) near += WaveSeries::kBin_s;
+      if (std::abs(bins[i].t_s - t_s) < 0.25 * period_s) near += series.bin_s();
     }
     if (near < 0.2 * period_s) {
       tracked = crossed = false;

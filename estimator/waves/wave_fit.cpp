@@ -29,7 +29,7 @@ WaveFit fit_wave(const WaveSeries& series, double begin_s, double end_s, double 
   fit.middle_s = 0.5 * (begin_s + end_s);
   fit.omega_radps = w;
   const BinRange range = range_of(series, begin_s, end_s);
-  fit.coverage = static_cast<double>(range.size()) * WaveSeries::kBin_s / (end_s - begin_s);
+  fit.coverage = static_cast<double>(range.size()) * series.bin_s() / (end_s - begin_s);
   if (range.size() < 2 * kUnknowns || fit.coverage < kLeastCoverage) return fit;
 
   const std::deque<Bin>& bins = series.bins();
@@ -50,7 +50,7 @@ WaveFit fit_wave(const WaveSeries& series, double begin_s, double end_s, double 
   fit.sin_mps2 = x(1);
   fit.offset_mps2 = x(4);
   // White noise of one-sided density d has variance d^2 / (2 dt) per sample.
-  const double dt_s = static_cast<double>(range.size()) * WaveSeries::kBin_s / count;
+  const double dt_s = static_cast<double>(range.size()) * series.bin_s() / count;
   const double variance = 0.5 * (solver.solve(Vector5::Unit(0))(0) + solver.solve(Vector5::Unit(1))(1));
   fit.sigma_per_density = std::sqrt(0.5 * variance / dt_s);
 
@@ -68,7 +68,7 @@ WaveFit fit_wave(const WaveSeries& series, double begin_s, double end_s, double 
   }
   const double block_variance = squares / std::max(1.0, blocks - kUnknowns);
   fit.misfit_mps2 = std::sqrt(block_variance);
-  fit.noise_density = std::sqrt(2 * block_variance * static_cast<double>(per_block) * WaveSeries::kBin_s);
+  fit.noise_density = std::sqrt(2 * block_variance * static_cast<double>(per_block) * series.bin_s());
   fit.valid = true;
   return fit;
 }

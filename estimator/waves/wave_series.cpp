@@ -4,9 +4,17 @@
 
 namespace waverig::estimator {
 
+void WaveSeries::set_sample_interval(double interval_s) {
+  if (started_ || interval_s <= 0) return;
+  constexpr double kAbout_s = 0.05;
+  bin_s_ = std::max(1.0, std::round(kAbout_s / interval_s)) * interval_s;
+  half_sample_s_ = 0.5 * interval_s;   // so that no sample falls on a bin's edge
+}
+
 void WaveSeries::add(const LevelledSample& sample) {
   if (!sample.usable) return;
-  const auto index = static_cast<std::int64_t>(std::floor(sample.t_s / kBin_s));
+  started_ = true;
+  const auto index = static_cast<std::int64_t>(std::floor((sample.t_s + half_sample_s_) / bin_s_));
   if (bins_.empty() || bins_.back().index != index) {
     Bin bin;
     bin.index = index;

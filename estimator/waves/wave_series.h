@@ -13,7 +13,7 @@
 namespace waverig::estimator {
 
 struct Bin {
-  std::int64_t index = 0;         // t_s / bin interval, rounded down
+  std::int64_t index = 0;         // of the bin interval it lies in
   double t_s = 0;                 // mean time of its samples
   double var_t_s2 = 0;            // mean square deviation from it
   double count = 0;
@@ -26,8 +26,8 @@ struct Bin {
 
 class WaveSeries {
  public:
-  static constexpr double kBin_s = 0.05;
-
+  // Bins of whole samples, about a twentieth of a second long. Before the first add(); later calls are ignored.
+  void set_sample_interval(double interval_s);
   void add(const LevelledSample& sample);        // unusable samples are left out
   void drop_before(double t_s);
 
@@ -35,10 +35,13 @@ class WaveSeries {
   bool empty() const { return bins_.empty(); }
   double begin_s() const { return bins_.empty() ? 0 : bins_.front().t_s; }
   double end_s() const { return bins_.empty() ? 0 : bins_.back().t_s; }
+  double bin_s() const { return bin_s_; }
   std::size_t lower_bound(double t_s) const;     // first bin not before t_s
 
  private:
   std::deque<Bin> bins_;
+  double bin_s_ = 0.05, half_sample_s_ = 0;
+  bool started_ = false;
 };
 
 // What a series shows of one span of time, as indices into its bins.
