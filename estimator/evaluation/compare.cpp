@@ -32,7 +32,8 @@ Difference judged(double baseline, double candidate, double sigma) {
 
 CellComparison compared(const CellResult& baseline, const CellResult& candidate) {
   const HeightStatistics &b = baseline.statistics, &c = candidate.statistics;
-  CellComparison result{baseline.period_s, baseline.height_m, baseline.method, {}, {}, Verdict::kNotSignificant};
+  CellComparison result{baseline.period_s,       baseline.height_m, baseline.method, {}, {},
+                        Verdict::kNotSignificant};
   result.mean_error_m =
       judged(mean_error_m(baseline), mean_error_m(candidate),
              std::hypot(b.expanded_uncertainty_m, c.expanded_uncertainty_m) / kCoverageFactor);

@@ -39,6 +39,13 @@ struct HeightStatistics {
   std::int32_t flags = 0;
 };
 
+// A method's sea state held against the truth of the same span.
+struct JudgedSea {
+  estimator::SeaState sea;
+  double true_hm0_m = estimator::kUnknown;    // 4 standard deviations of the true heave
+  double true_tm02_s = estimator::kUnknown;   // 2 pi times the ratio of the standard deviations of heave and rate
+};
+
 // One run, one method.
 struct RunResult {
   std::string run;            // stem of runs/<run>.lcm
@@ -48,7 +55,7 @@ struct RunResult {
   double height_m = 0;        // as set
   HeightStatistics statistics;
   std::vector<JudgedWave> waves;      // the steady ones
-  std::vector<estimator::SeaState> seas;
+  std::vector<JudgedSea> seas;
   double heave_rmse_m = estimator::kUnknown;   // against the true heave over the steady part, mean removed
   std::int64_t excluded_waves = 0;    // in ramps or cut by the record's edge
   double heave_gain = estimator::kUnknown;     // estimated over true heave, least squares over the steady part
@@ -65,7 +72,12 @@ struct CellResult {
   double height_m = 0;
   std::string method;
   HeightStatistics statistics;
-  double heave_rmse_m = estimator::kUnknown;
+  double heave_rmse_m = estimator::kUnknown;      // root of the mean square over the repeats
+  double true_hm0_m = estimator::kUnknown;        // this and the following: means over the repeats
+  double heave_gain = estimator::kUnknown;
+  double heave_lag_s = estimator::kUnknown;
+  double heave_sigma_ratio = estimator::kUnknown;
+  JudgedSea sea;   // mean of the sea states; directions averaged as unit vectors
 };
 
 struct CampaignResults {

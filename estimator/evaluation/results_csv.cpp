@@ -3,87 +3,82 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <tuple>
 
-#include "estimator/evaluation/bound.h"
 #include "estimator/evaluation/flag_names.h"
-#include "estimator/evaluation/height_statistics.h"
 #include "estimator/evaluation/results_io.h"
 
 namespace waverig::evaluation {
 namespace {
 
-// Mean over the repeats of a value that some of them may not know.
-class MeanSquare {
- public:
-  void add(double value) {
-    if (!std::isfinite(value)) return;
-    ++count_;
-    sum_ += value * value;
-  }
-  double root() const { return count_ > 0 ? std::sqrt(sum_ / count_) : estimator::kUnknown; }
-
- private:
-  int count_ = 0;
-  double sum_ = 0;
+struct Column {
+  const char* name;
+  double (*value)(const CellResult&);
 };
 
-void append(fmt::memory_buffer& out, double value) {
-  out.push_back(',');
-  if (std::isfinite(value)) fmt::format_to(std::back_inserter(out), "{:.4f}", value);
-}
+// DESIGN: these first, in this order.
+constexpr Column kAgreed[] = {
+    {"mean_height_cm", [](const CellResult& c) { return c.statistics.mean_height_m / kCentimetre; }},
+    {"error_rate_percent", [](const CellResult& c) { return c.statistics.error_rate_percent; }},
+    {"std_cm", [](const CellResult& c) { return c.statistics.std_m / kCentimetre; }},
+    {"expanded_uncertainty_cm",
+     [](const CellResult& c) { return c.statistics.expanded_uncertainty_m / kCentimetre; }},
+    {"rmse_cm", [](const CellResult& c) { return c.statistics.rmse_m / kCentimetre; }},
+};
+
+constexpr Column kMore[] = {
+    {"true_height_cm", [](const CellResult& c) { return c.statistics.mean_true_height_m / kCentimetre; }},
+    {"mean_error_percent", [](const CellResult& c) { return c.statistics.mean_error_percent; }},
+    {"bound_std_cm", [](const CellResult& c) { return c.statistics.bound_std_m / kCentimetre; }},
+    {"mean_period_s", [](const CellResult& c) { return c.statistics.mean_period_s; }},
+    {"heave_rmse_cm", [](const CellResult& c) { return c.heave_rmse_m / kCentimetre; }},
+    {"heave_rmse_percent", [](const CellResult& c) { return 100 * c.heave_rmse_m / c.true_hm0_m; }},
+    {"heave_gain", [](const CellResult& c) { return c.heave_gain; }},
+    {"heave_lag_s", [](const CellResult& c) { return c.heave_lag_s; }},
+    {"heave_sigma_ratio", [](const CellResult& c) { return c.heave_sigma_ratio; }},
+};
+
+constexpr Column kSea[] = {
+    {"hm0_cm", [](const CellResult& c) { return c.sea.sea.hm0_m / kCentimetre; }},
+    {"true_hm0_cm", [](const CellResult& c) { return c.sea.true_hm0_m / kCentimetre; }},
+    {"hm0_error_percent", [](const CellResult& c) { return 100 * (c.sea.sea.hm0_m / c.sea.true_hm0_m - 1); }},
+    {"tm02_s", [](const CellResult& c) { return c.sea.sea.tm02_s; }},
+    {"true_tm02_s", [](const CellResult& c) { return c.sea.true_tm02_s; }},
+    {"tp_s", [](const CellResult& c) { return c.sea.sea.tp_s; }},
+};
+
+constexpr Column kDirection[] = {
+    {"mean_direction_deg", [](const CellResult& c) { return c.sea.sea.mean_direction_rad / kDegree; }},
+    {"spread_deg", [](const CellResult& c) { return c.sea.sea.spread_rad / kDegree; }},
+    {"peak_direction_deg", [](const CellResult& c) { return c.sea.sea.peak_direction_rad / kDegree; }},
+    {"check_factor", [](const CellResult& c) { return c.sea.sea.check_factor; }},
+};
 
 }  // namespace
 
-std::vector<CellResult> cells_of(std::span<const RunResult> runs) {
-  std::vector<const RunResult*> sorted;
-  for (const RunResult& run : runs) sorted.push_back(&run);
-  const auto setting = [](const RunResult& r) { return std::tie(r.period_s, r.height_m, r.method); };
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const RunResult* a, const RunResult* b) {
-    return std::tuple_cat(setting(*a), std::tie(a->repeat, a->run)) <
-           std::tuple_cat(setting(*b), std::tie(b->repeat, b->run));
-  });
-  std::vector<CellResult> cells;
-  for (auto first = sorted.begin(); first != sorted.end();) {
-    HeightAccumulator heights;
-    MeanSquare bound, heave_rmse;
-    auto run = first;
-    for (; run != sorted.end() && setting(**run) == setting(**first); ++run) {
-      for (const JudgedWave& wave : (*run)->waves) heights.add(wave);
-      heights.close_record();
-      bound.add((*run)->statistics.bound_std_m);
-      heave_rmse.add((*run)->heave_rmse_m);
-    }
-    cells.push_back({(*first)->period_s, (*first)->height_m, (*first)->method,
-                     heights.statistics((*first)->height_m, bound.root()), heave_rmse.root()});
-    first = run;
-  }
-  return cells;
-}
-
 std::string results_csv(std::span<const CellResult> cells) {
-  fmt::memory_buffer out;
-  const auto text = std::back_inserter(out);
-  fmt::format_to(text,
-                 "period_s,height_cm,method,waves,mean_height_cm,error_rate_percent,std_cm,expanded_"
-                 "uncertainty_cm,rmse_cm,"
-                 "true_height_cm,mean_error_percent,bound_std_cm,heave_rmse_cm,mean_period_s,flags\n");
+  const auto any_knows = [&](const Column& column) {
+    return std::any_of(cells.begin(), cells.end(),
+                       [&](const CellResult& c) { return std::isfinite(column.value(c)); });
+  };
+  std::vector<std::span<const Column>> groups = {kAgreed, kMore};
+  if (any_knows(kSea[0])) groups.emplace_back(kSea);
+  if (any_knows(kDirection[0])) groups.emplace_back(kDirection);
+
+  std::string text = "period_s,height_cm,method,waves";
+  for (const auto& group : groups)
+    for (const Column& column : group) text += std::string(",") + column.name;
+  text += ",flags\n";
   for (const CellResult& cell : cells) {
-    const HeightStatistics& s = cell.statistics;
-    fmt::format_to(text, "{:g},{:g},{},{}", cell.period_s, cell.height_m / kCentimetre, cell.method, s.waves);
-    append(out, s.mean_height_m / kCentimetre);
-    append(out, s.error_rate_percent);
-    append(out, s.std_m / kCentimetre);
-    append(out, s.expanded_uncertainty_m / kCentimetre);
-    append(out, s.rmse_m / kCentimetre);
-    append(out, s.mean_true_height_m / kCentimetre);
-    append(out, s.mean_error_percent);
-    append(out, s.bound_std_m / kCentimetre);
-    append(out, cell.heave_rmse_m / kCentimetre);
-    append(out, s.mean_period_s);
-    fmt::format_to(text, ",{}\n", fmt::join(flag_names(s.flags), " "));
+    text += fmt::format("{:g},{:g},{},{}", cell.period_s, cell.height_m / kCentimetre, cell.method,
+                        cell.statistics.waves);
+    for (const auto& group : groups)
+      for (const Column& column : group) {
+        const double value = column.value(cell);
+        text += std::isfinite(value) ? fmt::format(",{:.4f}", value) : ",";
+      }
+    text += fmt::format(",{}\n", fmt::join(flag_names(cell.statistics.flags), " "));
   }
-  return fmt::to_string(out);
+  return text;
 }
 
 }  // namespace waverig::evaluation

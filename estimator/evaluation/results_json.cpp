@@ -1,201 +1,57 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <concepts>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "estimator/evaluation/atomic_file.h"
+#include "estimator/evaluation/results_fields.h"
 #include "estimator/evaluation/results_io.h"
-#include "lcmtypes/error.h"
 
 namespace waverig::evaluation {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using json::Json;
 
-// T, const or not: the fields of a structure are named once and serve both directions.
-template <class T, class Structure>
-concept Is = std::same_as<std::remove_const_t<T>, Structure>;
+template <class Structure>
+std::string line_of(const Structure& structure) {
+  Json object = Json::object();
+  json::Writer writer(object);
+  fields(writer, structure);
+  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
-// One direction of the fields below. Unknown numbers (NaN) are null in the file.
-class Writer {
+// results.json as text: an object of the campaign, with a line a cell and a line a run.
+class JsonFile {
  public:
-  explicit Writer(Json& json) : json_(json) {}
-  void operator()(const char* key, const double& value) {
-    json_[key] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  JsonFile(const std::filesystem::path& path, const CampaignResults& head) : file_(path) {
+    Json object = Json::object();
+    json::Writer writer(object);
+    head_fields(writer, head);
+    // The calibration's report is JSON itself: kept as such, not as a string within a string.
+    object["calibration"] =
+        head.calibration_json.empty() ? Json(nullptr) : Json::parse(head.calibration_json);
+    std::string text = object.dump(1, ' ', false, Json::error_handler_t::replace);
+    text.resize(text.size() - 2);  // the closing brace: cells and runs follow
+    file_.write(text);
   }
-  void operator()(const char* key, const std::string& value) { json_[key] = value; }
-  void operator()(const char* key, const char& value) { json_[key] = std::string(1, value); }
-  template <class Integer>
-  requires std::is_integral_v<Integer>
-  void operator()(const char* key, const Integer& value) { json_[key] = value; }
-  template <class Item>
-  void operator()(const char* key, const std::vector<Item>& items) {
-    Json& array = json_[key] = Json::array();
-    for (const Item& item : items) {
-      Json& element = array.emplace_back(Json::object());
-      Writer writer(element);
-      fields(writer, item);
-    }
+  void begin_array(const char* key) {
+    file_.write(fmt::format(",\n \"{}\": [", key));
+    first_ = true;
+  }
+  void element(std::string_view line) {
+    file_.write(first_ ? "\n  " : ",\n  ");
+    file_.write(line);
+    first_ = false;
+  }
+  void end_array() { file_.write("\n ]"); }
+  void commit() {
+    file_.write("\n}\n");
+    file_.commit();
   }
 
  private:
-  Json& json_;
+  AtomicFile file_;
+  bool first_ = true;
 };
-
-class Reader {
- public:
-  Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
-    if (!json_.is_object()) throw UserError(where_ + ": expected an object");
-  }
-  void operator()(const char* key, double& value) {
-    const Json& j = at(key);
-    if (!j.is_null() && !j.is_number()) throw wrong(key, "a number or null");
-    value = j.is_null() ? estimator::kUnknown : j.get<double>();
-  }
-  void operator()(const char* key, std::string& value) {
-    const Json& j = at(key);
-    if (!j.is_string()) throw wrong(key, "a string");
-    value = j.get<std::string>();
-  }
-  void operator()(const char* key, char& value) {
-    std::string text;
-    (*this)(key, text);
-    if (text.size() != 1) throw wrong(key, "one letter");
-    value = text[0];
-  }
-  void operator()(const char* key, bool& value) {
-    const Json& j = at(key);
-    if (!j.is_boolean()) throw wrong(key, "true or false");
-    value = j.get<bool>();
-  }
-  template <class Integer>
-  requires std::is_integral_v<Integer>
-  void operator()(const char* key, Integer& value) {
-    const Json& j = at(key);
-    if (!j.is_number_integer()) throw wrong(key, "a whole number");
-    value = j.get<Integer>();
-  }
-  template <class Item>
-  void operator()(const char* key, std::vector<Item>& items) {
-    const Json& array = at(key);
-    if (!array.is_array()) throw wrong(key, "an array");
-    items.clear();
-    for (const Json& element : array) {
-      Reader reader(element, fmt::format("{}, {}[{}]", where_, key, items.size()));
-      fields(reader, items.emplace_back());
-    }
-  }
-
- private:
-  const Json& at(const char* key) const {
-    const auto found = json_.find(key);
-    if (found == json_.end()) throw UserError(fmt::format("{}: key '{}' is missing", where_, key));
-    return *found;
-  }
-  UserError wrong(const char* key, const char* expected) const {
-    return UserError(fmt::format("{}: key '{}' is {}; expected {}", where_, key,
-                                 json_.at(key).dump().substr(0, 40), expected));
-  }
-
-  const Json& json_;
-  std::string where_;
-};
-
-// Every field of a structure once, for both directions.
-void fields(auto& a, Is<Contribution> auto& c) {
-  a("name", c.name);
-  a("sigma_m", c.sigma_m);
-  a("type", c.type);
-}
-
-void fields(auto& a, Is<HeightStatistics> auto& s) {
-  a("waves", s.waves);
-  a("mean_height_m", s.mean_height_m);
-  a("error_rate_percent", s.error_rate_percent);
-  a("std_m", s.std_m);
-  a("rmse_m", s.rmse_m);
-  a("mean_error_percent", s.mean_error_percent);
-  a("mean_true_height_m", s.mean_true_height_m);
-  a("expanded_uncertainty_m", s.expanded_uncertainty_m);
-  a("bound_std_m", s.bound_std_m);
-  a("mean_period_s", s.mean_period_s);
-  a("budget", s.budget);
-  a("flags", s.flags);
-}
-
-void fields(auto& a, Is<JudgedWave> auto& w) {
-  a("start_utime", w.wave.start_utime);
-  a("seq", w.wave.seq);
-  a("period_s", w.wave.period_s);
-  a("height_m", w.wave.height_m);
-  a("true_height_m", w.true_height_m);
-  a("noise_sigma_m", w.wave.noise_sigma_m);
-  a("calibration_sigma_m", w.wave.calibration_sigma_m);
-  a("tilt_sigma_m", w.wave.tilt_sigma_m);
-  a("frequency_sigma_m", w.wave.frequency_sigma_m);
-  a("flags", w.wave.flags);
-}
-
-void fields(auto& a, Is<estimator::SeaState> auto& s) {
-  a("start_utime", s.start_utime);
-  a("seq", s.seq);
-  a("duration_s", s.duration_s);
-  a("hm0_m", s.hm0_m);
-  a("hm0_sigma_m", s.hm0_sigma_m);
-  a("tp_s", s.tp_s);
-  a("tm01_s", s.tm01_s);
-  a("tm02_s", s.tm02_s);
-  a("tm_10_s", s.tm_10_s);
-  a("h13_m", s.h13_m);
-  a("h110_m", s.h110_m);
-  a("hmax_m", s.hmax_m);
-  a("mean_direction_rad", s.mean_direction_rad);
-  a("spread_rad", s.spread_rad);
-  a("peak_direction_rad", s.peak_direction_rad);
-  a("check_factor", s.check_factor);
-  a("flags", s.flags);
-}
-
-void fields(auto& a, Is<RunResult> auto& r) {
-  a("run", r.run);
-  a("method", r.method);
-  a("repeat", r.repeat);
-  a("period_s", r.period_s);
-  a("height_m", r.height_m);
-  fields(a, r.statistics);
-  a("heave_rmse_m", r.heave_rmse_m);
-  a("heave_gain", r.heave_gain);
-  a("heave_lag_s", r.heave_lag_s);
-  a("heave_sigma_ratio", r.heave_sigma_ratio);
-  a("true_hm0_m", r.true_hm0_m);
-  a("true_tm02_s", r.true_tm02_s);
-  a("noise_density_mps2_rthz", r.noise_density_mps2_rthz);
-  a("excluded_waves", r.excluded_waves);
-  a("single_waves", r.waves);
-  a("seas", r.seas);
-}
-
-void fields(auto& a, Is<CellResult> auto& c) {
-  a("period_s", c.period_s);
-  a("height_m", c.height_m);
-  a("method", c.method);
-  fields(a, c.statistics);
-  a("heave_rmse_m", c.heave_rmse_m);
-}
-
-void fields(auto& a, Is<CampaignResults> auto& r) {
-  a("name", r.name);
-  a("version", r.version);
-  a("command", r.command);
-  a("seed", r.seed);
-  a("complete", r.complete);
-  a("cells", r.cells);
-  a("runs", r.runs);
-}
 
 Json parsed(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -204,49 +60,124 @@ Json parsed(const std::filesystem::path& path) {
         fmt::format("{}: cannot be read; expected the results of a finished campaign", path.string()));
   std::ostringstream text;
   text << file.rdbuf();
+  const std::string all = text.str();
   try {
-    return Json::parse(text.str());
+    return Json::parse(all);
   } catch (const Json::parse_error& error) {
-    const std::string all = text.str();
-    const auto line =
-        std::count(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, all.size())),
-                   '\n') +
-        1;
-    throw UserError(
-        fmt::format("{}, line {}: not valid JSON; expected the results of a campaign", path.string(), line));
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, all.size()));
+    throw UserError(fmt::format("{}, line {}: not valid JSON; expected the results of a campaign",
+                                path.string(), std::count(all.begin(), end, '\n') + 1));
   }
 }
 
+void write_cells(JsonFile& file, const std::filesystem::path& directory, std::span<const CellResult> cells) {
+  write_atomically(directory / "results.csv", results_csv(cells));
+  file.begin_array("cells");
+  for (const CellResult& cell : cells) file.element(line_of(cell));
+  file.end_array();
+}
+
 }  // namespace
+
+// Where a run stands in the journal, and what it is sorted by.
+struct ResultsWriter::Entry {
+  RunResult key;  // without waves and statistics
+  long offset;
+  std::size_t size;
+};
+
+ResultsWriter::ResultsWriter(std::filesystem::path directory)
+    : directory_(std::move(directory)), journal_path_(directory_ / "results.journal.partial") {
+  invalidate_results(directory_);
+  journal_ = std::fopen(journal_path_.c_str(), "w+b");
+  if (journal_ == nullptr)
+    throw UserError(
+        fmt::format("{}: cannot be written; expected an existing, writable directory", directory_.string()));
+}
+
+ResultsWriter::~ResultsWriter() {
+  std::fclose(journal_);
+  std::error_code ignored;
+  std::filesystem::remove(journal_path_, ignored);
+}
+
+void ResultsWriter::add(const RunResult& run) {
+  const std::string line = line_of(run);
+  Entry entry{{}, std::ftell(journal_), line.size()};
+  entry.key.run = run.run;
+  entry.key.method = run.method;
+  entry.key.repeat = run.repeat;
+  entry.key.period_s = run.period_s;
+  entry.key.height_m = run.height_m;
+  if (std::fwrite(line.data(), 1, line.size(), journal_) != line.size())
+    throw std::runtime_error(fmt::format("{}: not everything could be written", journal_path_.string()));
+  entries_.push_back(std::move(entry));
+}
+
+CampaignResults ResultsWriter::finish(CampaignResults head, std::size_t waves_in_memory) {
+  std::sort(entries_.begin(), entries_.end(),
+            [](const Entry& a, const Entry& b) { return earlier(a.key, b.key); });
+  std::string line;
+  const auto read = [&](const Entry& entry) {
+    line.resize(entry.size);
+    if (std::fseek(journal_, entry.offset, SEEK_SET) != 0 ||
+        std::fread(line.data(), 1, line.size(), journal_) != line.size())
+      throw std::runtime_error(fmt::format("{}: cannot be read back", journal_path_.string()));
+  };
+  // Once for the cells, which stand first in the file, once for the runs themselves.
+  head.runs.clear();
+  CellPooling pooling;
+  for (const Entry& entry : entries_) {
+    read(entry);
+    const Json object = Json::parse(line);
+    json::Reader reader(object, journal_path_.string());
+    RunResult run;
+    fields(reader, run);
+    pooling.add(run);
+    if (run.waves.size() > waves_in_memory) run.waves = {};
+    waves_in_memory -= run.waves.size();
+    head.runs.push_back(std::move(run));
+  }
+  head.cells = pooling.finish();
+  JsonFile file(directory_ / "results.json", head);
+  write_cells(file, directory_, head.cells);
+  file.begin_array("runs");
+  for (const Entry& entry : entries_) {
+    read(entry);
+    file.element(line);
+  }
+  file.end_array();
+  file.commit();
+  return head;
+}
+
+void write_results(const std::filesystem::path& directory, const CampaignResults& results) {
+  std::filesystem::remove(directory / "results.json");
+  JsonFile file(directory / "results.json", results);
+  write_cells(file, directory, results.cells);
+  file.begin_array("runs");
+  for (const RunResult& run : results.runs) file.element(line_of(run));
+  file.end_array();
+  file.commit();
+}
 
 void invalidate_results(const std::filesystem::path& directory) {
   std::filesystem::remove(directory / "results.json");
   std::filesystem::remove(directory / "results.csv");
 }
 
-void write_results(const std::filesystem::path& directory, const CampaignResults& results) {
-  Json json;
-  Writer writer(json);
-  fields(writer, results);
-  // The calibration's report is JSON itself: kept as such, not as a string within a string.
-  json["calibration"] =
-      results.calibration_json.empty() ? Json(nullptr) : Json::parse(results.calibration_json);
-  std::filesystem::remove(directory / "results.json");
-  write_atomically(directory / "results.csv", results_csv(results.cells));
-  write_atomically(directory / "results.json",
-                   json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-}
-
 CampaignResults read_results(const std::filesystem::path& directory) {
   const std::filesystem::path path = directory / "results.json";
-  const Json json = parsed(path);
-  Reader reader(json, path.string());
+  const Json object = parsed(path);
+  json::Reader reader(object, path.string());
   CampaignResults results;
-  fields(reader, results);
+  head_fields(reader, results);
+  reader("cells", results.cells);
+  reader("runs", results.runs);
   if (!results.complete)
     throw UserError(fmt::format("{}: key 'complete' is false; expected a finished campaign", path.string()));
-  const auto calibration = json.find("calibration");
-  if (calibration != json.end() && !calibration->is_null()) results.calibration_json = calibration->dump(1);
+  const auto calibration = object.find("calibration");
+  if (calibration != object.end() && !calibration->is_null()) results.calibration_json = calibration->dump(1);
   return results;
 }
 

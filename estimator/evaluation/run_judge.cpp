@@ -128,7 +128,11 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
   result.period_s = period_s_;
   result.height_m = height_m_;
   result.noise_density_mps2_rthz = settings_.noise_density_mps2_rthz;
-  result.seas = std::move(method.seas);
+  for (const estimator::SeaState& sea : method.seas) {
+    const TrueSea truth =
+        true_sea(truth_, sea.start_utime, sea.start_utime + std::llround(sea.duration_s / kMicrosecond));
+    result.seas.push_back({sea, truth.hm0_m, truth.tm02_s});
+  }
 
   if (method.waves.empty()) method.waves = counted_waves(method);
   HeightAccumulator accumulator;

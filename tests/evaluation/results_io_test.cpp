@@ -37,7 +37,7 @@ RunResult run(double period_s, double height_m, const std::string& method, int r
   a.close_record();
   r.statistics = a.statistics(height_m, 0.0026);
   r.heave_rmse_m = 0.002;
-  r.seas.push_back({.hm0_m = 1.5});
+  r.seas.push_back({.sea = {.hm0_m = 1.5}, .true_hm0_m = 1.49});
   return r;
 }
 
@@ -94,11 +94,51 @@ TEST(Results, ComeBackFromTheDiskWhole) {
   EXPECT_EQ(back.runs[0].waves.size(), 5u);
   EXPECT_EQ(back.runs[0].waves[3].wave.height_m, c.runs[0].waves[3].wave.height_m);
   EXPECT_TRUE(std::isnan(back.runs[0].waves[3].wave.tilt_sigma_m));
-  EXPECT_EQ(back.runs[0].seas.at(0).hm0_m, 1.5);
+  EXPECT_EQ(back.runs[0].seas.at(0).sea.hm0_m, 1.5);
   ASSERT_EQ(back.cells.size(), 3u);
   EXPECT_EQ(back.cells[0].statistics.budget.size(), c.cells[0].statistics.budget.size());
   EXPECT_EQ(back.cells[0].statistics.budget[0].name, "noise");
   EXPECT_EQ(results_csv(back.cells), Scratch::read(scratch.path() / "results.csv"));
+}
+
+// The writer that keeps runs on disk gives the same bytes as all runs at hand, whoever finished first.
+TEST(Results, WrittenRunByRunAreTheSameBytes) {
+  const Scratch scratch;
+  CampaignResults c = campaign();
+  std::sort(c.runs.begin(), c.runs.end(), earlier);
+  write_results(scratch.path(), c);
+  const std::string json = Scratch::read(scratch.path() / "results.json"),
+                    csv = Scratch::read(scratch.path() / "results.csv");
+  CampaignResults head = c;
+  head.runs.clear();
+  head.cells.clear();
+  {
+    ResultsWriter writer(scratch.path());
+    EXPECT_THROW(read_results(scratch.path()), UserError);  // what an earlier campaign left is gone
+    for (const std::size_t i : {2u, 0u, 3u, 1u}) writer.add(c.runs[i]);
+    const CampaignResults finished = writer.finish(head, 11);
+    EXPECT_EQ(results_csv(finished.cells), csv);
+    ASSERT_EQ(finished.runs.size(), 4u);
+    EXPECT_EQ(finished.runs[1].waves.size(), 5u);
+    EXPECT_EQ(finished.runs[2].waves.size(), 0u);  // above the limit
+    EXPECT_EQ(finished.runs[3].statistics.waves, 5);
+  }
+  EXPECT_EQ(Scratch::read(scratch.path() / "results.json"), json);
+  EXPECT_EQ(Scratch::read(scratch.path() / "results.csv"), csv);
+  EXPECT_FALSE(std::filesystem::exists(scratch.path() / "results.journal.partial"));
+}
+
+TEST(Results, SeaStateAndDirectionStandToTheRightOnlyWhereKnown) {
+  CampaignResults c = campaign();
+  for (auto& r : c.runs) r.seas.clear();
+  EXPECT_EQ(results_csv(cells_of(c.runs)).find("hm0_cm"), std::string::npos);
+  c.runs[0].seas.push_back({.sea = {.hm0_m = 1.5, .mean_direction_rad = 350 * kDegree}, .true_hm0_m = 1.5});
+  c.runs[0].seas.push_back({.sea = {.hm0_m = 1.5, .mean_direction_rad = 20 * kDegree}, .true_hm0_m = 1.5});
+  const auto cells = cells_of(c.runs);
+  EXPECT_NEAR(cells[2].sea.sea.mean_direction_rad / kDegree, 5, 1e-9);
+  const std::string text = results_csv(cells);
+  EXPECT_NE(text.find(",hm0_cm,true_hm0_cm,hm0_error_percent,"), std::string::npos) << text;
+  EXPECT_NE(text.find(",mean_direction_deg,spread_deg,"), std::string::npos) << text;
 }
 
 TEST(Results, LeaveNoTemporaryFiles) {

@@ -1,0 +1,126 @@
+#include "estimator/evaluation/cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace waverig::evaluation {
+
+bool earlier(const RunResult& a, const RunResult& b) {
+  const auto key = [](const RunResult& r) {
+    return std::tie(r.period_s, r.height_m, r.method, r.repeat, r.run);
+  };
+  return key(a) < key(b);
+}
+
+void CellPooling::Mean::add(double value) {
+  if (!std::isfinite(value)) return;
+  count += 1;
+  sum += value;
+}
+
+double CellPooling::Mean::value() const { return count > 0 ? sum / count : estimator::kUnknown; }
+
+void CellPooling::MeanAngle::add(double angle_rad) {
+  north.add(std::cos(angle_rad));
+  east.add(std::sin(angle_rad));
+}
+
+double CellPooling::MeanAngle::value() const {
+  const double angle_rad = std::atan2(east.value(), north.value());
+  return angle_rad < 0 ? angle_rad + 360 * kDegree : angle_rad;
+}
+
+void CellPooling::MeanSea::add(const JudgedSea& judged) {
+  const estimator::SeaState& s = judged.sea;
+  duration.add(s.duration_s);
+  hm0.add(s.hm0_m);
+  hm0_variance.add(s.hm0_sigma_m * s.hm0_sigma_m);
+  tp.add(s.tp_s);
+  tm01.add(s.tm01_s);
+  tm02.add(s.tm02_s);
+  tm_10.add(s.tm_10_s);
+  h13.add(s.h13_m);
+  h110.add(s.h110_m);
+  hmax.add(s.hmax_m);
+  spread.add(s.spread_rad);
+  check.add(s.check_factor);
+  direction.add(s.mean_direction_rad);
+  peak_direction.add(s.peak_direction_rad);
+  true_hm0.add(judged.true_hm0_m);
+  true_tm02.add(judged.true_tm02_s);
+  flags |= s.flags;
+}
+
+JudgedSea CellPooling::MeanSea::value() const {
+  JudgedSea judged;
+  estimator::SeaState& s = judged.sea;
+  s.duration_s = duration.value();
+  s.hm0_m = hm0.value();
+  s.hm0_sigma_m = std::sqrt(hm0_variance.value() / std::max(1.0, hm0_variance.count));
+  s.tp_s = tp.value();
+  s.tm01_s = tm01.value();
+  s.tm02_s = tm02.value();
+  s.tm_10_s = tm_10.value();
+  s.h13_m = h13.value();
+  s.h110_m = h110.value();
+  s.hmax_m = hmax.value();
+  s.mean_direction_rad = direction.value();
+  s.spread_rad = spread.value();
+  s.peak_direction_rad = peak_direction.value();
+  s.check_factor = check.value();
+  s.flags = flags;
+  judged.true_hm0_m = true_hm0.value();
+  judged.true_tm02_s = true_tm02.value();
+  return judged;
+}
+
+void CellPooling::add(const RunResult& run) {
+  if (open_ && std::tie(run.period_s, run.height_m, run.method) !=
+                   std::tie(cell_.period_s, cell_.height_m, cell_.method))
+    close();
+  open_ = true;
+  cell_.period_s = run.period_s;
+  cell_.height_m = run.height_m;
+  cell_.method = run.method;
+  for (const JudgedWave& wave : run.waves) heights_.add(wave);
+  heights_.close_record();
+  bound_square_.add(run.statistics.bound_std_m * run.statistics.bound_std_m);
+  heave_square_.add(run.heave_rmse_m * run.heave_rmse_m);
+  true_hm0_.add(run.true_hm0_m);
+  gain_.add(run.heave_gain);
+  lag_.add(run.heave_lag_s);
+  sigma_ratio_.add(run.heave_sigma_ratio);
+  for (const JudgedSea& sea : run.seas) sea_.add(sea);
+}
+
+void CellPooling::close() {
+  cell_.statistics = heights_.statistics(cell_.height_m, std::sqrt(bound_square_.value()));
+  cell_.heave_rmse_m = std::sqrt(heave_square_.value());
+  cell_.true_hm0_m = true_hm0_.value();
+  cell_.heave_gain = gain_.value();
+  cell_.heave_lag_s = lag_.value();
+  cell_.heave_sigma_ratio = sigma_ratio_.value();
+  cell_.sea = sea_.value();
+  std::vector<CellResult> cells = std::move(cells_);
+  cells.push_back(std::move(cell_));
+  *this = {};
+  cells_ = std::move(cells);
+}
+
+std::vector<CellResult> CellPooling::finish() {
+  if (open_) close();
+  return std::move(cells_);
+}
+
+std::vector<CellResult> cells_of(std::span<const RunResult> runs) {
+  std::vector<const RunResult*> sorted;
+  for (const RunResult& run : runs) sorted.push_back(&run);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const RunResult* a, const RunResult* b) { return earlier(*a, *b); });
+  CellPooling pooling;
+  for (const RunResult* run : sorted) pooling.add(*run);
+  return pooling.finish();
+}
+
+}  // namespace waverig::evaluation

@@ -1,0 +1,54 @@
+// From judged runs to cells: a row of results.csv for each setting and method.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "estimator/evaluation/height_statistics.h"
+#include "estimator/evaluation/results.h"
+
+namespace waverig::evaluation {
+
+// Period, height, method, repeat, name: the order in which runs are pooled and written, whoever ran first.
+bool earlier(const RunResult& a, const RunResult& b);
+
+// Pools runs that come in that order, in memory that grows with the cells only.
+class CellPooling {
+ public:
+  void add(const RunResult& run);
+  std::vector<CellResult> finish();
+
+ private:
+  // Mean of the values that are known.
+  struct Mean {
+    double count = 0, sum = 0;
+    void add(double value);
+    double value() const;
+  };
+  // Mean of angles, as unit vectors.
+  struct MeanAngle {
+    Mean north, east;
+    void add(double angle_rad);
+    double value() const;
+  };
+  struct MeanSea {
+    Mean duration, hm0, hm0_variance, tp, tm01, tm02, tm_10, h13, h110, hmax, spread, check, true_hm0,
+        true_tm02;
+    MeanAngle direction, peak_direction;
+    std::int32_t flags = 0;
+    void add(const JudgedSea& sea);
+    JudgedSea value() const;
+  };
+  void close();
+
+  bool open_ = false;
+  CellResult cell_;
+  HeightAccumulator heights_;
+  Mean bound_square_, heave_square_, true_hm0_, gain_, lag_, sigma_ratio_;
+  MeanSea sea_;
+  std::vector<CellResult> cells_;
+};
+
+// The same for runs that are all at hand, in any order.
+std::vector<CellResult> cells_of(std::span<const RunResult> runs);
+
+}  // namespace waverig::evaluation
