@@ -64,33 +64,40 @@ CalibratedUnit calibrate(const CampaignSettings& campaign) {
   return result;
 }
 
-evaluation::CampaignResults run_campaign(const Campaign& campaign, const CampaignUnit& unit,
+evaluation::CampaignResults run_campaign(const Campaign& campaign, const CalibratedUnit& calibrated,
                                          const std::vector<RunPlan>& runs, const ResultsDirectory& directory,
                                          const SweepOptions& options) {
-  std::vector<std::vector<evaluation::RunResult>> judged(runs.size());
+  const CampaignUnit& unit = calibrated.unit;
+  evaluation::invalidate_results(directory.working());
+  evaluation::ResultsWriter writer(directory.working());
+  std::mutex writing;
   {
     Progress progress("runs", runs.size());
     in_parallel(options.jobs, runs.size(), [&](std::size_t i) {
       const auto log = directory.runs() / (runs[i].name + ".lcm");
-      judged[i] = std::filesystem::exists(log)   // a log under its own name is whole: done before a resume
-                      ? evaluation::judge(evaluation::load_run(log), judge_settings(unit))
-                      : run_embedded(campaign.settings, unit, runs[i], log);
+      const auto judged = std::filesystem::exists(log)   // a log under its own name is whole: done before a resume
+                              ? evaluation::judge(evaluation::load_run(log), judge_settings(unit))
+                              : run_embedded(campaign.settings, unit, runs[i], log);
+      {
+        const std::lock_guard lock(writing);
+        for (const auto& of_method : judged) writer.add(of_method);
+      }
       progress.done(runs[i].name);
     });
   }
-  evaluation::CampaignResults results;
-  results.name = campaign.settings.name;
-  results.version = options.version;
-  results.command = options.command;
-  results.seed = campaign.settings.seed;
-  results.complete = true;
-  for (auto& of_run : judged)
-    for (auto& result : of_run) results.runs.push_back(std::move(result));
-  results.cells = evaluation::cells_of(results.runs);
-  return results;
+  evaluation::CampaignResults head;
+  head.name = campaign.settings.name;
+  head.version = options.version;
+  head.command = options.command;
+  head.seed = campaign.settings.seed;
+  head.complete = true;
+  head.calibration_json = calibrated.report_json;
+  return writer.finish(std::move(head));
 }
 
-std::string results_table(const evaluation::CampaignResults& results) {
+namespace {
+
+std::string regular_table(const evaluation::CampaignResults& results) {
   std::string table = fmt::format("{:>8} {:>9}  {:<12} {:>6} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", "period s", "height cm",
                                   "method", "waves", "mean cm", "error %", "std cm", "bound cm", "U(k=2)", "rmse cm");
   for (const auto& cell : results.cells) {
@@ -101,6 +108,25 @@ std::string results_table(const evaluation::CampaignResults& results) {
                          s.expanded_uncertainty_m / kCentimetre, s.rmse_m / kCentimetre);
   }
   return table;
+}
+
+std::string sea_table(const evaluation::CampaignResults& results) {
+  const auto percent = [](double value, double of) { return 100 * (value / of - 1); };
+  std::string table =
+      fmt::format("{:>5} {:>7}  {:<12} {:>12} {:>12} {:>9} {:>8} {:>12} {:>13}\n", "Tp s", "Hm0 cm", "method",
+                  "heave rms cm", "% of Hm0", "gain", "lag s", "Hm0 error %", "Tm02 error %");
+  for (const auto& cell : results.cells)
+    table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:9.4f} {:8.3f} {:12.2f} {:13.2f}\n", cell.period_s,
+                         cell.height_m / kCentimetre, cell.method, cell.heave_rmse_m / kCentimetre,
+                         100 * cell.heave_rmse_m / cell.true_hm0_m, cell.heave_gain, cell.heave_lag_s,
+                         percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m), percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s));
+  return table;
+}
+
+}  // namespace
+
+std::string results_table(const evaluation::CampaignResults& results, Mover mover) {
+  return mover == Mover::kArm ? regular_table(results) : sea_table(results);
 }
 
 }  // namespace waverig::rig

@@ -24,13 +24,14 @@ struct CalibratedUnit {
 };
 CalibratedUnit calibrate(const CampaignSettings& campaign);
 
-// Runs what is not there yet in directory.runs() and judges all. Same seed, same results and same log bytes, for any
-// number of jobs.
-evaluation::CampaignResults run_campaign(const Campaign& campaign, const CampaignUnit& unit,
+// Runs what is not there yet in directory.runs(), judges all, and writes results.csv and results.json. Same seed, same
+// results and same log bytes, for any number of jobs.
+evaluation::CampaignResults run_campaign(const Campaign& campaign, const CalibratedUnit& calibrated,
                                          const std::vector<RunPlan>& runs, const ResultsDirectory& directory,
                                          const SweepOptions& options);
 
-// The table of results for people: a row a setting and method.
-std::string results_table(const evaluation::CampaignResults& results);
+// The table of results for people: a row a setting and method. Of regular waves their heights, of seas the heave and the
+// sea state.
+std::string results_table(const evaluation::CampaignResults& results, Mover mover);
 
 }  // namespace waverig::rig

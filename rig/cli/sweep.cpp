@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "estimator/evaluation/atomic_file.h"
-#include "estimator/evaluation/results_io.h"
 #include "lcmtypes/error.h"
 #include "rig/campaign/sweep.h"
 #include "rig/cli/commands.h"
@@ -58,13 +57,11 @@ int sweep(const SweepArguments& arguments) {
       .command = fmt::format("waverig sweep {} --seed {}{}", arguments.campaign, campaign.settings.seed,
                              arguments.shard.empty() ? "" : " --shard " + arguments.shard),
       .version = kVersion};
-  evaluation::CampaignResults results =
-      rig::run_campaign(campaign, calibrated.unit, rig::runs_of_shard(plan, shard), directory, options);
-  results.calibration_json = calibrated.report_json;
-  evaluation::write_results(directory.working(), results);
+  const evaluation::CampaignResults results =
+      rig::run_campaign(campaign, calibrated, rig::runs_of_shard(plan, shard), directory, options);
   draw_campaign(results, directory.working(), calibrated.unit, arguments.jobs);
   directory.finish();
-  fmt::print("{}\nResults: {}\n", rig::results_table(results), arguments.out);
+  fmt::print("{}\nResults: {}\n", rig::results_table(results, campaign.settings.sweep.mover), arguments.out);
   return 0;
 }
 

@@ -30,8 +30,7 @@ Outcome sweep(const Campaign& campaign, const std::filesystem::path& out, int jo
   const CalibratedUnit calibrated = calibrate(campaign.settings);
   SweepOptions options;
   options.jobs = jobs;
-  outcome.results = run_campaign(campaign, calibrated.unit, outcome.runs, directory, options);
-  evaluation::write_results(directory.working(), outcome.results);
+  outcome.results = run_campaign(campaign, calibrated, outcome.runs, directory, options);
   directory.finish();
   return outcome;
 }
