@@ -90,6 +90,7 @@ double second_order_rms(const Expansion& e, double sigma) {
 }
 
 // Nodes and weights for the normal distribution: eigenvalues of the Jacobi matrix (Golub & Welsch 1969).
+constexpr double kNegligibleWeight = 1e-13;  // the corners of the cube: three quarters of the nodes
 struct NormalQuadrature {
   static constexpr int kNodes = 24;
   Eigen::VectorXd node, weight;
@@ -150,6 +151,7 @@ ExactFigures exact(const Vector3d& triad, const Vector3d& m_B, double sigma, Ang
       for (int k = 0; k < NormalQuadrature::kNodes; ++k) {
         const Vector3d d = sigma * Vector3d(kQuadrature.node[i], kQuadrature.node[j], kQuadrature.node[k]);
         const double weight = kQuadrature.weight[i] * kQuadrature.weight[j] * kQuadrature.weight[k];
+        if (weight < kNegligibleWeight) continue;
         const double error = exact_error_rad(triad, m_B, d)[static_cast<int>(angle)];
         mean += weight * error;
         square += weight * error * error;
