@@ -16,7 +16,8 @@ waverig_library(rig_models
     mechanism/rotating_arm.cpp
     sensors/accelerometer.cpp sensors/gyroscope.cpp sensors/magnetometer.cpp
     frontend/crc.cpp frontend/frame_codec.cpp frontend/frame_layout.cpp frontend/simulated_unit.cpp
-    acquisition/acquisition.cpp acquisition/calibration_run.cpp acquisition/serial_port.cpp
+    acquisition/acquisition.cpp acquisition/calibration_report.cpp acquisition/calibration_run.cpp
+    acquisition/serial_port.cpp
   LINK waverig::kinematics waverig::calibration
   PRIVATE_LINK waverig::rig_settings fmt::fmt nlohmann_json::nlohmann_json)
 target_include_directories(waverig_rig_models PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated)

@@ -8,12 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "estimator/calibration/readable_json.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::estimator {
 namespace {
 
 using nlohmann::ordered_json;
+constexpr double kLargestBend_pmps2 = 0.05 / kStandardGravity;
 constexpr const char* kFormat = "waverig sensor calibration 1";
 
 template <class Matrix>
@@ -64,11 +66,13 @@ class Reader {
     return {number(node[0], path), number(node[1], path), number(node[2], path)};
   }
   [[noreturn]] void refuse(const char* path, const ordered_json& found, std::string_view expected) const {
-    throw UserError(fmt::format("{}: {} = {}: expected {}", name_, path, found.dump().substr(0, 60), expected));
+    throw UserError(
+        fmt::format("{}: {} = {}: expected {}", name_, path, found.dump().substr(0, 60), expected));
   }
   const ordered_json& at(const char* path) const {
     const ordered_json::json_pointer pointer(path);
-    if (!document_.contains(pointer)) throw UserError(fmt::format("{}: {} is missing: expected a calibration file", name_, path));
+    if (!document_.contains(pointer))
+      throw UserError(fmt::format("{}: {} is missing: expected a calibration file", name_, path));
     return document_.at(pointer);
   }
 
@@ -91,25 +95,38 @@ Matrix3d AccelerometerCalibration::sigma_M() const {
 }
 
 Vector3d AccelerometerCalibration::sigma_b_mps2() const {
-  return covariance.diagonal().tail<3>().cwiseSqrt();
+  return covariance.diagonal().segment<3>(9).cwiseSqrt();
+}
+
+Vector3d AccelerometerCalibration::reading(const Vector3d& f_B) const {
+  const Vector3d u = M * f_B + b_mps2;
+  return u + quadratic_pmps2.cwiseProduct(u.cwiseAbs2());
 }
 
 Vector3d AccelerometerCalibration::sigma_f_mps2(const Vector3d& f_B) const {
-  // d f = -M^-1 (dM f + db), first order.
-  Eigen::Matrix<double, 3, 12> J = Eigen::Matrix<double, 3, 12>::Zero();
+  // d f = -M^-1 (dM f + db + dq u^2), first order.
+  const Vector3d u = M * f_B + b_mps2;
+  Eigen::Matrix<double, 3, 15> J = Eigen::Matrix<double, 3, 15>::Zero();
   for (int r = 0; r < 3; ++r) {
     J.block<1, 3>(r, 3 * r) = f_B.transpose();
     J(r, 9 + r) = 1;
+    J(r, 12 + r) = u[r] * u[r];
   }
   J = (M.inverse() * J).eval();
   return (J * covariance * J.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
 }
 
 AccelerometerCorrection::AccelerometerCorrection(const AccelerometerCalibration& calibration)
-    : M_inverse_(calibration.M.inverse()), b_mps2_(calibration.b_mps2) {
+    : M_inverse_(calibration.M.inverse()),
+      b_mps2_(calibration.b_mps2),
+      q_(calibration.quadratic_pmps2.array()),
+      bent_(!calibration.quadratic_pmps2.isZero(0)) {
   if (!calibration.M.allFinite() || !calibration.b_mps2.allFinite() ||
       !((calibration.M - Matrix3d::Identity()).cwiseAbs().maxCoeff() < 0.5))
-    throw UserError("accelerometer calibration: M: expected a matrix within 0.5 of the identity, element by element");
+    throw UserError(
+        "accelerometer calibration: M: expected a matrix within 0.5 of the identity, element by element");
+  if (!(calibration.quadratic_pmps2.cwiseAbs().maxCoeff() < kLargestBend_pmps2))
+    throw UserError("accelerometer calibration: quadratic_pmps2: expected a bend below 5 % of g at g");
 }
 
 std::string to_json(const SensorCalibration& c) {
@@ -119,23 +136,25 @@ std::string to_json(const SensorCalibration& c) {
   j["method"] = c.method;
   j["utime"] = c.utime;
   j["gravity_mps2"] = c.gravity_mps2;
-  j["temperature_degC"] = c.temperature_degC;   // null where unknown
+  j["temperature_degC"] = c.temperature_degC;  // null where unknown
   j["accelerometer"]["M"] = rows_of(c.accelerometer.M);
   j["accelerometer"]["sigma_M"] = rows_of(c.accelerometer.sigma_M());
   j["accelerometer"]["b_mps2"] = list_of(c.accelerometer.b_mps2);
   j["accelerometer"]["sigma_b_mps2"] = list_of(c.accelerometer.sigma_b_mps2());
+  j["accelerometer"]["quadratic_pmps2"] = list_of(c.accelerometer.quadratic_pmps2);
   j["accelerometer"]["covariance"] = rows_of(c.accelerometer.covariance);
   j["gyroscope"]["offset_radps"] = list_of(c.gyroscope.offset_radps);
   j["gyroscope"]["offset_sigma_radps"] = list_of(c.gyroscope.offset_sigma_radps);
   j["residual_rms_mps2"] = c.residual_rms_mps2;
   j["chi_square"] = c.chi_square;
   j["degrees_of_freedom"] = c.degrees_of_freedom;
-  return j.dump(2) + "\n";
+  return readable_json(j);
 }
 
 SensorCalibration calibration_from_json(const std::string& text, const std::string& name) {
   const ordered_json document = ordered_json::parse(text, nullptr, false);
-  if (document.is_discarded()) throw UserError(fmt::format("{}: is no JSON: expected a calibration file", name));
+  if (document.is_discarded())
+    throw UserError(fmt::format("{}: is no JSON: expected a calibration file", name));
   const Reader in(document, name);
   if (in.text("/format") != kFormat) in.refuse("/format", in.at("/format"), fmt::format("\"{}\"", kFormat));
   SensorCalibration c;
@@ -146,13 +165,14 @@ SensorCalibration calibration_from_json(const std::string& text, const std::stri
   if (!in.at("/temperature_degC").is_null()) c.temperature_degC = in.number("/temperature_degC");
   in.matrix("/accelerometer/M", c.accelerometer.M);
   c.accelerometer.b_mps2 = in.vector("/accelerometer/b_mps2");
+  c.accelerometer.quadratic_pmps2 = in.vector("/accelerometer/quadratic_pmps2");
   in.matrix("/accelerometer/covariance", c.accelerometer.covariance);
   c.gyroscope.offset_radps = in.vector("/gyroscope/offset_radps");
   c.gyroscope.offset_sigma_radps = in.vector("/gyroscope/offset_sigma_radps");
   c.residual_rms_mps2 = in.number("/residual_rms_mps2");
   c.chi_square = in.number("/chi_square");
   c.degrees_of_freedom = static_cast<int>(in.integer("/degrees_of_freedom"));
-  AccelerometerCorrection usable(c.accelerometer);   // throws where it is none
+  AccelerometerCorrection usable(c.accelerometer);  // throws where it is none
   return c;
 }
 

@@ -10,32 +10,45 @@
 
 namespace waverig::estimator {
 
-using Matrix12d = Eigen::Matrix<double, 12, 12>;
+using Matrix15d = Eigen::Matrix<double, 15, 15>;
 
-// f_m = M f + b, Lee 2014, eq. (1); f_m is the reading by nominal sensitivities, m/s^2.
+// f_m = u + q u^2 axis by axis, u = M f + b. With q = 0 this is Lee 2014, eq. (1); q is the even part of the
+// characteristic's bend, which six positions see as the difference between the level readings and the mean of
+// up and down. f_m is the reading by nominal sensitivities, m/s^2.
 struct AccelerometerCalibration {
   Matrix3d M = Matrix3d::Identity();
   Vector3d b_mps2 = Vector3d::Zero();
-  // Of (M row by row: M11 M12 M13 M21 … M33, then b1 b2 b3). Zero where no uncertainty is known.
-  Matrix12d covariance = Matrix12d::Zero();
+  Vector3d quadratic_pmps2 = Vector3d::Zero();  // q, per m/s^2
+  // Of (M row by row: M11 M12 M13 M21 … M33, then b1 b2 b3, then q1 q2 q3). Zero where no uncertainty is
+  // known.
+  Matrix15d covariance = Matrix15d::Zero();
 
-  Matrix3d sigma_M() const;        // standard uncertainties, k = 1
+  Vector3d reading(const Vector3d& f_B) const;  // f_m
+  Matrix3d sigma_M() const;                     // standard uncertainties, k = 1
   Vector3d sigma_b_mps2() const;
   // Standard uncertainty of the corrected specific force per axis at a given one, from the covariance.
   Vector3d sigma_f_mps2(const Vector3d& f_B) const;
 };
 
-// Lee 2014, eq. (16): f = M^-1 (f_m - b), with the inverse taken once.
+// Lee 2014, eq. (16): f = M^-1 (f_m - b), with the inverse taken once; before it, where there is a bend, the
+// root u of f_m = u + q u^2 that goes to f_m with q going to zero.
 class AccelerometerCorrection {
  public:
   AccelerometerCorrection() = default;
-  // Throws UserError where M is not near enough to the identity to be a sensor's.
+  // Throws UserError where M is not near enough to the identity, or the bend not small enough, to be a
+  // sensor's.
   explicit AccelerometerCorrection(const AccelerometerCalibration& calibration);
-  Vector3d operator()(const Vector3d& f_m) const { return M_inverse_ * (f_m - b_mps2_); }
+  Vector3d operator()(const Vector3d& f_m) const {
+    if (!bent_) return M_inverse_ * (f_m - b_mps2_);
+    const Eigen::Array3d root = (1 + 4 * q_ * f_m.array()).max(0.25).sqrt();  // far outside any range: held
+    return M_inverse_ * ((2 * f_m.array() / (1 + root)).matrix() - b_mps2_);
+  }
 
  private:
   Matrix3d M_inverse_ = Matrix3d::Identity();
   Vector3d b_mps2_ = Vector3d::Zero();
+  Eigen::Array3d q_ = Eigen::Array3d::Zero();
+  bool bent_ = false;
 };
 
 struct GyroscopeCalibration {
@@ -52,8 +65,8 @@ struct SensorCalibration {
   double temperature_degC = std::numeric_limits<double>::quiet_NaN();
   AccelerometerCalibration accelerometer;
   GyroscopeCalibration gyroscope;
-  double residual_rms_mps2 = 0;            // of the fit
-  double chi_square = 0;                   // residuals over their stated uncertainty
+  double residual_rms_mps2 = 0;  // of the fit
+  double chi_square = 0;         // residuals over their stated uncertainty
   int degrees_of_freedom = 0;
 };
 

@@ -66,7 +66,8 @@ AllanTerms fit_allan(std::span<const AllanPoint> points) {
   for (const AllanPoint& p : points) {
     const double variance = p.deviation * p.deviation;
     if (!(variance > 0)) continue;
-    const double weight = p.degrees / (2 * variance * variance);   // a variance's own variance: 2 s^4 / degrees
+    const double weight =
+        p.degrees / (2 * variance * variance);  // a variance's own variance: 2 s^4 / degrees
     const Vector4 b = basis(p.tau_s);
     normal += weight * b * b.transpose();
     right += weight * variance * b;
@@ -77,7 +78,7 @@ AllanTerms fit_allan(std::span<const AllanPoint> points) {
   const auto terms = points.size() < kTerms ? 0U : 1U << kTerms;
   for (unsigned used = 1; used < terms; ++used) {
     const Vector4 c = solve(normal, right, used);
-    const double gain = 2 * c.dot(right) - c.dot(normal * c);   // how far the weighted squares fall
+    const double gain = 2 * c.dot(right) - c.dot(normal * c);  // how far the weighted squares fall
     if (c.minCoeff() < 0 || gain <= best_gain) continue;
     best_gain = gain;
     best = c;

@@ -57,7 +57,7 @@ std::vector<Stretch> stretches(std::span<const ImuSample> samples, const Rotatio
       ++end;
     }
     if (gap) {
-      begin = end - 1;   // the sample after the gap; the loop went one past it
+      begin = end - 1;  // the sample after the gap; the loop went one past it
       continue;
     }
     if (end >= samples.size()) break;
@@ -69,7 +69,7 @@ std::vector<Stretch> stretches(std::span<const ImuSample> samples, const Rotatio
 
 Window carried(std::span<const ImuSample> samples, const Vector3d& gyro_offset) {
   Window window;
-  Quaterniond q = Quaterniond::Identity();   // body at the sample to body at the first one
+  Quaterniond q = Quaterniond::Identity();  // body at the sample to body at the first one
   Matrix3d R_sum = Matrix3d::Zero();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k > 0) {
@@ -125,7 +125,8 @@ struct Normal {
   double weighted_squares = 0, squares = 0;
 };
 
-Normal normal_equations(const std::vector<Window>& windows, const Vector9d& x, double gravity, double outlier) {
+Normal normal_equations(const std::vector<Window>& windows, const Vector9d& x, double gravity,
+                        double outlier) {
   Normal normal;
   for (const Window& w : windows) {
     const Vector3d v = w.offset + w.slope * x;
@@ -142,7 +143,8 @@ Normal normal_equations(const std::vector<Window>& windows, const Vector9d& x, d
 
 }  // namespace
 
-RotationFit fit_rotation(std::span<const ImuSample> samples, double gravity_mps2, const RotationFitSettings& settings) {
+RotationFit fit_rotation(std::span<const ImuSample> samples, double gravity_mps2,
+                         const RotationFitSettings& settings) {
   // 1. Windows, and the gyroscope's zero from those at rest.
   const std::vector<Stretch> found = stretches(samples, settings);
   RotationFit fit;
@@ -164,13 +166,16 @@ RotationFit fit_rotation(std::span<const ImuSample> samples, double gravity_mps2
   }
   fit.coverage = 3 * Eigen::SelfAdjointEigenSolver<Matrix3d>(spread).eigenvalues()[0];
   if (!(fit.coverage >= kLeastCoverage))
-    throw UserError(fmt::format("rotation calibration: coverage of attitudes {:.3f}: expected at least {} (turn the "
-                                "sensor about all its axes)", fit.coverage, kLeastCoverage));
+    throw UserError(
+        fmt::format("rotation calibration: coverage of attitudes {:.3f}: expected at least {} (turn the "
+                    "sensor about all its axes)",
+                    fit.coverage, kLeastCoverage));
 
   // 3. Gauss-Newton with Huber weights.
   Vector9d x = Vector9d::Zero();
   const double n = static_cast<double>(windows.size());
-  fit.residual_before_mps2 = std::sqrt(normal_equations(windows, x, gravity_mps2, settings.outlier_mps2).squares / n);
+  fit.residual_before_mps2 =
+      std::sqrt(normal_equations(windows, x, gravity_mps2, settings.outlier_mps2).squares / n);
   for (int i = 0; i < kIterations; ++i) {
     const Normal normal = normal_equations(windows, x, gravity_mps2, settings.outlier_mps2);
     const Vector9d step = normal.matrix.ldlt().solve(normal.right);
@@ -189,13 +194,14 @@ RotationFit fit_rotation(std::span<const ImuSample> samples, double gravity_mps2
   const Matrix9d covariance = normal.matrix.inverse() * normal.weighted_squares / std::max(1.0, 0.5 * n - 9);
   Eigen::Matrix<double, 12, 9> J = Eigen::Matrix<double, 12, 9>::Zero();
   for (int i = 0; i < 9; ++i) {
-    const Matrix3d dA = i < 6 ? Matrix3d(A_of(Vector9d::Unit(i)) - Matrix3d::Identity()) : Matrix3d(Matrix3d::Zero());
+    const Matrix3d dA =
+        i < 6 ? Matrix3d(A_of(Vector9d::Unit(i)) - Matrix3d::Identity()) : Matrix3d(Matrix3d::Zero());
     const Matrix3d dM = -M * dA * M;
     for (int r = 0; r < 3; ++r) J.block<3, 1>(3 * r, i) = dM.row(r).transpose();
     J.block<3, 1>(9, i) = dM * c;
     if (i >= 6) J.block<3, 1>(9, i) += M.col(i - 6);
   }
-  fit.calibration.covariance = J * covariance * J.transpose();
+  fit.calibration.covariance.topLeftCorner<12, 12>() = J * covariance * J.transpose();
   return fit;
 }
 

@@ -1,5 +1,6 @@
 #include "estimator/calibration/six_position.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -11,8 +12,12 @@ namespace waverig::estimator {
 namespace {
 
 using Matrix18d = Eigen::Matrix<double, 18, 18>;
-using Design = Eigen::Matrix<double, 18, 12>;
 using Vector18d = Eigen::Matrix<double, 18, 1>;
+// 12 or 15 columns: M row by row, b, and where the model has it q.
+using Design = Eigen::Matrix<double, 18, Eigen::Dynamic, 0, 18, 15>;
+using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 15, 1>;
+
+constexpr int kBendIterations = 4;  // each gains the factor q g, some 1e-3
 
 Matrix3d cross(const Vector3d& v) {
   Matrix3d m;
@@ -20,22 +25,33 @@ Matrix3d cross(const Vector3d& v) {
   return m;
 }
 
-// Rows of one position: reading_i = M_i1 f_1 + M_i2 f_2 + M_i3 f_3 + b_i.
-Eigen::Matrix<double, 3, 12> design_rows(const Vector3d& f_B) {
-  Eigen::Matrix<double, 3, 12> rows = Eigen::Matrix<double, 3, 12>::Zero();
+// Rows of one position: reading_i = M_i1 f_1 + M_i2 f_2 + M_i3 f_3 + b_i + q_i u_i^2.
+void fill_rows(Design& A, int position, const Vector3d& f_B, const Vector3d& u) {
   for (int i = 0; i < 3; ++i) {
-    rows.block<1, 3>(i, 3 * i) = f_B.transpose();
-    rows(i, 9 + i) = 1;
+    const int row = 3 * position + i;
+    A.row(row).setZero();
+    A.block<1, 3>(row, 3 * i) = f_B.transpose();
+    A(row, 9 + i) = 1;
+    if (A.cols() > 12) A(row, 12 + i) = u[i] * u[i];
   }
-  return rows;
 }
 
-// Sum of squares of the residuals in units of their uncertainty, over the 6 directions that the fit leaves free.
-double chi_square_of(const Vector18d& residual, const Matrix18d& readings_covariance, const Matrix18d& remover) {
+AccelerometerCalibration calibration_of(const Unknowns& x) {
+  AccelerometerCalibration c;
+  c.M = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(x.data());
+  c.b_mps2 = x.segment<3>(9);
+  if (x.size() > 12) c.quadratic_pmps2 = x.tail<3>();
+  return c;
+}
+
+// Sum of squares of the residuals in units of their uncertainty, over the directions that the fit leaves
+// free.
+double chi_square_of(const Vector18d& residual, const Matrix18d& readings_covariance,
+                     const Matrix18d& remover, int unknowns) {
   const Matrix18d covariance = remover * readings_covariance * remover.transpose();
   const Eigen::SelfAdjointEigenSolver<Matrix18d> eigen(covariance);
   double sum = 0;
-  for (int i = 12; i < 18; ++i) {   // ascending: the last six are not zero by construction
+  for (int i = unknowns; i < 18; ++i) {  // ascending: the last ones are not zero by construction
     const double variance = eigen.eigenvalues()[i];
     const double part = eigen.eigenvectors().col(i).dot(residual);
     if (variance > 0) sum += part * part / variance;
@@ -68,22 +84,27 @@ Matrix3d PositionRecorder::mean_covariance() const {
   return symmetric / (n * (n - 1));
 }
 
-SixPositionFit fit_six_positions(const std::array<PositionReading, 6>& readings, double fixture_sigma_rad) {
-  Design A;
+SixPositionFit fit_six_positions(const std::array<PositionReading, 6>& readings, double fixture_sigma_rad,
+                                 SixPositionModel model) {
+  const bool bent = model == SixPositionModel::kBent;
+  Design A(18, bent ? 15 : 12);
   Vector18d y;
-  for (int k = 0; k < 6; ++k) {
-    const PositionReading& reading = readings[static_cast<std::size_t>(k)];
-    A.block<3, 12>(3 * k, 0) = design_rows(reading.f_B);
-    y.segment<3>(3 * k) = reading.mean_mps2;
-  }
-  Eigen::ColPivHouseholderQR<Design> qr(A);
-  if (!y.allFinite() || qr.rank() < 12)
-    throw UserError("six-position calibration: positions: expected each axis once up and once down");
-  const Eigen::Matrix<double, 12, 1> x = qr.solve(y);
-
+  Unknowns x;
   SixPositionFit fit;
-  fit.calibration.M = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(x.data());
-  fit.calibration.b_mps2 = x.tail<3>();
+  for (int iteration = 0; iteration < (bent ? kBendIterations : 1); ++iteration) {
+    for (int k = 0; k < 6; ++k) {
+      const PositionReading& reading = readings[static_cast<std::size_t>(k)];
+      const Vector3d u = iteration == 0 ? reading.mean_mps2
+                                        : Vector3d(fit.calibration.M * reading.f_B + fit.calibration.b_mps2);
+      fill_rows(A, k, reading.f_B, u);
+      y.segment<3>(3 * k) = reading.mean_mps2;
+    }
+    Eigen::ColPivHouseholderQR<Design> qr(A);
+    if (!y.allFinite() || qr.rank() < A.cols())
+      throw UserError("six-position calibration: positions: expected each axis once up and once down");
+    x = qr.solve(y);
+    fit.calibration = calibration_of(x);
+  }
 
   // What the readings are worth: scatter, and the fixture's miss d, which moves f by f x d.
   Matrix18d S = Matrix18d::Zero();
@@ -92,14 +113,39 @@ SixPositionFit fit_six_positions(const std::array<PositionReading, 6>& readings,
     const Matrix3d J = fit.calibration.M * cross(reading.f_B) * fixture_sigma_rad;
     S.block<3, 3>(3 * k, 3 * k) = reading.covariance + J * J.transpose();
   }
-  const Eigen::Matrix<double, 12, 18> solver = (A.transpose() * A).inverse() * A.transpose();
-  fit.calibration.covariance = solver * S * solver.transpose();
+  const int n = static_cast<int>(A.cols());
+  const Eigen::MatrixXd solver = A.completeOrthogonalDecomposition().pseudoInverse();
+  fit.calibration.covariance.topLeftCorner(n, n) = solver * S * solver.transpose();
 
   const Vector18d residual = y - A * x;
   for (int k = 0; k < 6; ++k) fit.residual_mps2[static_cast<std::size_t>(k)] = residual.segment<3>(3 * k);
   fit.residual_rms_mps2 = std::sqrt(residual.squaredNorm() / 18);
-  fit.chi_square = chi_square_of(residual, S, Matrix18d::Identity() - A * solver);
+  fit.degrees_of_freedom = 18 - n;
+  fit.chi_square = chi_square_of(residual, S, Matrix18d::Identity() - A * solver, n);
   return fit;
+}
+
+CalibrationError error_against(const AccelerometerCalibration& found, const AccelerometerCalibration& truth) {
+  const auto unknowns_of = [](const AccelerometerCalibration& c) {
+    Eigen::Matrix<double, 15, 1> x;
+    x << c.M.row(0).transpose(), c.M.row(1).transpose(), c.M.row(2).transpose(), c.b_mps2, c.quadratic_pmps2;
+    return x;
+  };
+  const Eigen::Matrix<double, 15, 1> error = unknowns_of(found) - unknowns_of(truth);
+  // Scaled to a unit diagonal, with 1 where nothing is stated: the unknowns differ in unit by orders of
+  // magnitude.
+  Matrix15d scaled = Matrix15d::Identity();
+  CalibrationError result;
+  for (int i = 0; i < 15; ++i) {
+    if (!(found.covariance(i, i) > 0)) continue;
+    ++result.degrees_of_freedom;
+    result.over_sigma[i] = error[i] / std::sqrt(found.covariance(i, i));
+    for (int k = 0; k < 15; ++k)
+      if (found.covariance(k, k) > 0)
+        scaled(i, k) = found.covariance(i, k) / std::sqrt(found.covariance(i, i) * found.covariance(k, k));
+  }
+  result.chi_square = result.over_sigma.dot(Eigen::LDLT<Matrix15d>(scaled).solve(result.over_sigma));
+  return result;
 }
 
 }  // namespace waverig::estimator

@@ -3,8 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "estimator/calibration/accelerometer_calibration.h"
+#include "estimator/calibration/front_end.h"
 #include "estimator/types.h"
 #include "rig/frontend/frame_codec.h"
 
@@ -12,22 +15,23 @@ namespace waverig::rig {
 
 // One decoded frame of the sensor unit; the twin of counts_t.
 struct UnitCounts {
-  std::int64_t utime = 0;   // middle of the counting interval
-  std::int64_t seq = 0;     // unwrapped frame counter
+  std::int64_t utime = 0;  // middle of the counting interval
+  std::int64_t seq = 0;    // unwrapped frame counter
   Eigen::Vector3i accel_positive = Eigen::Vector3i::Zero(), accel_negative = Eigen::Vector3i::Zero();
   Eigen::Vector3i gyro = Eigen::Vector3i::Zero(), mag = Eigen::Vector3i::Zero();
   std::int32_t temperature = 0;
-  std::int32_t flags = 0;   // lcmtypes/flags.h
+  std::int32_t flags = 0;  // lcmtypes/flags.h
 };
 
-// What the counts are worth before calibration: the front end's and the sensors' sensitivities, from their data
-// sheets or, for the front end, from its own calibration.
+// What the counts are worth before calibration: the front end's and the sensors' sensitivities, from their
+// data sheets or, for the front end, from its own calibration.
 struct Sensitivities {
   double sample_interval_s = 0.01;
-  Vector3d positive_quantum_C = Vector3d::Constant(1), negative_quantum_C = Vector3d::Constant(1);   // K_P, K_N
-  Vector3d converter_bias_A = Vector3d::Zero();                                                      // i_AFbias
-  double current_per_accel_ApMps2 = 1;      // sensor and voltage-to-current stage
-  double accel_range_mps2 = 0;              // 0: no limit known
+  Vector3d positive_quantum_C = Vector3d::Constant(1),
+           negative_quantum_C = Vector3d::Constant(1);  // K_P, K_N
+  Vector3d converter_bias_A = Vector3d::Zero();         // i_AFbias
+  double current_per_accel_ApMps2 = 1;                  // sensor and voltage-to-current stage
+  double accel_range_mps2 = 0;                          // 0: no limit known
   double gyro_count_radps = 1;
   double mag_count_uT = 0.1;
 };
@@ -44,13 +48,20 @@ struct MagnetometerCorrection {
 
 class Acquisition {
  public:
-  explicit Acquisition(const Sensitivities& sensitivities, const FrameLayout& layout = default_frame_layout());
+  explicit Acquisition(const Sensitivities& sensitivities,
+                       const FrameLayout& layout = default_frame_layout());
 
   // From now on samples are calibrated; without it they carry flag::kUncalibrated.
-  void apply(const estimator::AccelerometerCalibration& accelerometer, const estimator::GyroscopeCalibration& gyroscope);
+  void apply(const estimator::AccelerometerCalibration& accelerometer,
+             const estimator::GyroscopeCalibration& gyroscope);
   void apply(const MagnetometerCorrection& magnetometer) { magnetometer_ = magnetometer; }
+  // From now on the converter's counts are worth what its own calibration says at the unit's temperature,
+  // Kim, eqs. (1), (2); channels names those of x, y and z. Throws UserError where the calibration has none
+  // of that name. What was found of the sensor with other worths (six positions) does not hold any more.
+  void apply(const estimator::FrontEndCalibration& front_end, const std::array<std::string, 3>& channels);
 
-  // Bytes from the wire, in any pieces; sink(const UnitCounts&, const estimator::ImuSample&) for each intact frame.
+  // Bytes from the wire, in any pieces; sink(const UnitCounts&, const estimator::ImuSample&) for each intact
+  // frame.
   template <class Sink>
   void add(std::span<const std::uint8_t> bytes, Sink&& sink) {
     decoder_.add(bytes);
@@ -69,13 +80,20 @@ class Acquisition {
   const FrameStatistics& statistics() const { return decoder_.statistics(); }
 
  private:
+  struct Worth {  // of one count, and of the converter's bias, referred to the sensor's input
+    Vector3d positive_mps2, negative_mps2, bias_mps2;
+  };
   UnitCounts counts_of(const Frame& frame) const;
+  Worth worth_at(double temperature_degC) const;
 
   Sensitivities sensitivities_;
   FrameDecoder decoder_;
   std::array<std::size_t, 15> slot_;
   FrameField temperature_field_;
-  Vector3d positive_mps2_, negative_mps2_, bias_mps2_;   // of one count, and of the converter's bias
+  std::vector<estimator::FrontEndChannel> channels_;  // of x, y, z; empty: the sensitivities' own
+  estimator::TemperatureLaw oscillator_;
+  Worth worth_;
+  std::int32_t worth_temperature_ = 0;
   double saturation_mps2_ = 0;
   estimator::AccelerometerCorrection accelerometer_;
   Vector3d gyro_offset_radps_ = Vector3d::Zero();

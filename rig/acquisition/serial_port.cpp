@@ -17,13 +17,14 @@ namespace waverig::rig {
 namespace {
 
 speed_t speed_of(int baud) {
-  static const std::map<int, speed_t> speeds{
-      {9600, B9600},       {19200, B19200},     {38400, B38400},     {57600, B57600},     {115200, B115200},
-      {230400, B230400},   {460800, B460800},   {921600, B921600},   {1000000, B1000000}, {2000000, B2000000},
-      {3000000, B3000000}, {4000000, B4000000}};
+  static const std::map<int, speed_t> speeds{{9600, B9600},       {19200, B19200},     {38400, B38400},
+                                             {57600, B57600},     {115200, B115200},   {230400, B230400},
+                                             {460800, B460800},   {921600, B921600},   {1000000, B1000000},
+                                             {2000000, B2000000}, {3000000, B3000000}, {4000000, B4000000}};
   const auto found = speeds.find(baud);
   if (found == speeds.end())
-    throw UserError(fmt::format("serial port: baud = {}: expected a standard rate from 9600 to 4000000", baud));
+    throw UserError(
+        fmt::format("serial port: baud = {}: expected a standard rate from 9600 to 4000000", baud));
   return found->second;
 }
 
@@ -47,7 +48,8 @@ SerialPort::SerialPort(const std::filesystem::path& path, int baud) : path_(path
   const speed_t speed = speed_of(baud);
   descriptor_ = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor_ < 0)
-    throw UserError(fmt::format("{}: {}: expected a serial port or pseudo-terminal", path.string(), reason()));
+    throw UserError(
+        fmt::format("{}: {}: expected a serial port or pseudo-terminal", path.string(), reason()));
   termios mode{};
   bool set = ::tcgetattr(descriptor_, &mode) == 0;
   ::cfmakeraw(&mode);
@@ -72,7 +74,8 @@ std::span<const std::uint8_t> SerialPort::read(std::span<std::uint8_t> buffer, i
 void SerialPort::write(std::span<const std::uint8_t> bytes, int timeout_ms) {
   while (!bytes.empty()) {
     if (!wait_for(descriptor_, POLLOUT, timeout_ms, path_))
-      throw std::runtime_error(fmt::format("{}: the serial line took no bytes in {} ms", path_.string(), timeout_ms));
+      throw std::runtime_error(
+          fmt::format("{}: the serial line took no bytes in {} ms", path_.string(), timeout_ms));
     const ssize_t put = ::write(descriptor_, bytes.data(), bytes.size());
     if (put < 0 && errno != EAGAIN && errno != EINTR)
       throw std::runtime_error(fmt::format("{}: {}", path_.string(), reason()));

@@ -18,7 +18,8 @@ std::uint32_t reflected(std::uint32_t value, int bits) {
 }  // namespace
 
 Crc::Crc(const CrcParameters& p) : parameters_(p) {
-  if (p.width < 8 || p.width > 32) throw UserError(fmt::format("crc.width = {}: expected 8 to 32 bits", p.width));
+  if (p.width < 8 || p.width > 32)
+    throw UserError(fmt::format("crc.width = {}: expected 8 to 32 bits", p.width));
   mask_ = p.width == 32 ? 0xFFFFFFFFU : (1U << p.width) - 1;
   const int align = 32 - p.width;
   const std::uint32_t poly = p.refin ? reflected(p.poly & mask_, p.width) : (p.poly & mask_) << align;
@@ -31,7 +32,8 @@ Crc::Crc(const CrcParameters& p) : parameters_(p) {
   }
   constexpr std::array<std::uint8_t, 9> digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
   if (const std::uint32_t found = of(digits); found != (p.check & mask_))
-    throw UserError(fmt::format("crc.check = 0x{:X}: expected 0x{:X}, the check value of these parameters", p.check, found));
+    throw UserError(fmt::format("crc.check = 0x{:X}: expected 0x{:X}, the check value of these parameters",
+                                p.check, found));
 }
 
 std::uint32_t Crc::of(std::span<const std::uint8_t> bytes) const {

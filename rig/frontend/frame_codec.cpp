@@ -29,7 +29,8 @@ std::vector<FieldPlace> places_of(const FrameLayout& layout) {
 FieldPlace::FieldPlace(const FrameField& field)
     : first_byte(static_cast<std::size_t>(field.bit_offset / 8)),
       bytes((field.bit_offset % 8 + field.bits + 7) / 8),
-      shift(field.order == ByteOrder::kBig ? 8 * bytes - field.bit_offset % 8 - field.bits : field.bit_offset % 8),
+      shift(field.order == ByteOrder::kBig ? 8 * bytes - field.bit_offset % 8 - field.bits
+                                           : field.bit_offset % 8),
       mask(field.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << field.bits) - 1),
       sign(field.type == FieldType::kSigned ? std::uint64_t{1} << (field.bits - 1) : 0),
       big(field.order == ByteOrder::kBig) {}
@@ -55,7 +56,9 @@ void FieldPlace::store(std::uint8_t* frame, std::int64_t raw) const {
 }
 
 FrameEncoder::FrameEncoder(const FrameLayout& layout)
-    : places_(places_of(layout)), blank_(static_cast<std::size_t>(layout.length_bytes)), crc_place_(layout.crc) {
+    : places_(places_of(layout)),
+      blank_(static_cast<std::size_t>(layout.length_bytes)),
+      crc_place_(layout.crc) {
   std::ranges::copy(layout.sync, blank_.begin());
   std::ranges::copy(layout.terminator, blank_.end() - static_cast<std::ptrdiff_t>(layout.terminator.size()));
   if (crc_place_) crc_.emplace(crc_place_->parameters);
@@ -86,7 +89,7 @@ FrameDecoder::FrameDecoder(const FrameLayout& layout, std::int64_t largest_gap)
   if (!layout.counter.empty()) {
     counter_ = layout.index_of(layout.counter);
     modulus_ = std::int64_t{1} << layout.fields[*counter_].bits;
-    largest_gap_ = std::min(largest_gap_, modulus_ / 4);   // a narrow counter tells little of long gaps
+    largest_gap_ = std::min(largest_gap_, modulus_ / 4);  // a narrow counter tells little of long gaps
   }
   for (Frame* frame : {&frame_, &held_, &waiting_}) frame->raw.resize(places_.size());
 }
@@ -118,8 +121,9 @@ bool FrameDecoder::next_intact(Frame& frame) {
     }
     const std::size_t left = buffer_.size() - at_ - 1;
     const void* const found = left > 0 ? std::memchr(here + 1, sync_[0], left) : nullptr;
-    const std::size_t step =
-        found == nullptr ? left + 1 : static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - here);
+    const std::size_t step = found == nullptr
+                                 ? left + 1
+                                 : static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - here);
     at_ += step;
     statistics_.skipped_bytes += static_cast<std::int64_t>(step);
     clean_start_ = false;
@@ -170,7 +174,7 @@ const Frame* FrameDecoder::next() {
     }
     if (holding_) {
       const std::int64_t from_held = steps(held_.raw[*counter_], counter);
-      if (from_held >= 1 && from_held <= largest_gap_ + 1) {   // borne out: the held one first, then this one
+      if (from_held >= 1 && from_held <= largest_gap_ + 1) {  // borne out: the held one first, then this one
         holding_ = false;
         has_waiting_ = true;
         std::swap(waiting_, frame_);

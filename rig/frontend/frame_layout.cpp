@@ -38,12 +38,15 @@ FrameField read_field(TomlTable& table, int length_bytes) {
   FrameField field;
   field.name = table.text("name", std::nullopt);
   const std::string type = table.choice("type", std::nullopt, {"unsigned", "signed", "float"});
-  field.type = type == "unsigned" ? FieldType::kUnsigned : type == "signed" ? FieldType::kSigned : FieldType::kFloat;
+  field.type = type == "unsigned" ? FieldType::kUnsigned
+               : type == "signed" ? FieldType::kSigned
+                                  : FieldType::kFloat;
   field.bit_offset = whole(table, "bit_offset", {0, 8.0 * length_bytes - 1});
   field.bits = whole(table, "bits", {1, 64});
   field.order = byte_order(table);
   field.unit = table.text("unit", "");
-  if (field.bit_offset + field.bits > 8 * length_bytes) table.refuse("bits", "a field that ends within the frame");
+  if (field.bit_offset + field.bits > 8 * length_bytes)
+    table.refuse("bits", "a field that ends within the frame");
   if (field.bit_offset % 8 + field.bits > 64) table.refuse("bits", "a field within eight bytes");
   if (field.type == FieldType::kFloat && field.bits != 32 && field.bits != 64)
     table.refuse("bits", "32 or 64 bits of a float");
@@ -54,7 +57,8 @@ FrameField read_field(TomlTable& table, int length_bytes) {
     const std::vector<double> value = table.numbers("segment_value", std::nullopt);
     if (raw.size() < 2 || !std::ranges::is_sorted(raw, std::less_equal{}))
       table.refuse("segment_raw", "at least two ascending raw numbers");
-    if (value.size() != raw.size()) table.refuse("segment_value", fmt::format("{} values, one a raw number", raw.size()));
+    if (value.size() != raw.size())
+      table.refuse("segment_value", fmt::format("{} values, one a raw number", raw.size()));
     for (std::size_t i = 0; i < raw.size(); ++i) field.segments.push_back({raw[i], value[i]});
   }
   for (TomlTable& limits : table.tables("limits")) {
@@ -70,13 +74,18 @@ CrcPlacement read_crc(TomlTable& table, int length_bytes) {
   const auto word = [&](std::string_view key) {
     return static_cast<std::uint32_t>(table.integer(key, std::nullopt, kWord));
   };
-  crc.parameters = {whole(table, "width", {8, 32}), word("poly"), word("init"),
-                    table.boolean("refin", std::nullopt), table.boolean("refout", std::nullopt),
-                    word("xorout"), word("check")};
+  crc.parameters = {whole(table, "width", {8, 32}),
+                    word("poly"),
+                    word("init"),
+                    table.boolean("refin", std::nullopt),
+                    table.boolean("refout", std::nullopt),
+                    word("xorout"),
+                    word("check")};
   if (crc.parameters.width % 8 != 0) table.refuse("width", "whole bytes: 8, 16, 24 or 32");
   crc.first_byte = whole(table, "first_byte", {0, length_bytes - 1.0});
   crc.last_byte = whole(table, "last_byte", {static_cast<double>(crc.first_byte), length_bytes - 1.0});
-  crc.byte_offset = whole(table, "byte_offset", {0, static_cast<double>(length_bytes - crc.parameters.width / 8)});
+  crc.byte_offset =
+      whole(table, "byte_offset", {0, static_cast<double>(length_bytes - crc.parameters.width / 8)});
   crc.order = byte_order(table);
   if (crc.byte_offset <= crc.last_byte && crc.byte_offset + crc.parameters.width / 8 > crc.first_byte)
     table.refuse("byte_offset", "a place outside the bytes that the CRC covers");
@@ -100,12 +109,14 @@ FrameLayout read_layout(TomlTable& root) {
   std::set<std::string> names;
   for (TomlTable& table : root.tables("field")) {
     layout.fields.push_back(read_field(table, layout.length_bytes));
-    if (!names.insert(layout.fields.back().name).second) table.refuse("name", "a name that no other field has");
+    if (!names.insert(layout.fields.back().name).second)
+      table.refuse("name", "a name that no other field has");
   }
   layout.counter = root.text("counter", "");
   if (!layout.counter.empty()) {
     const auto found = std::ranges::find(layout.fields, layout.counter, &FrameField::name);
-    if (found == layout.fields.end() || found->type != FieldType::kUnsigned || found->bits < 4 || found->bits > 32)
+    if (found == layout.fields.end() || found->type != FieldType::kUnsigned || found->bits < 4 ||
+        found->bits > 32)
       root.refuse("counter", "the name of an unsigned field of 4 to 32 bits");
   }
   if (root.has("crc")) {
@@ -145,7 +156,8 @@ double FrameField::value(std::int64_t raw) const {
 std::size_t FrameLayout::index_of(std::string_view field) const {
   const auto found = std::ranges::find(fields, field, &FrameField::name);
   if (found == fields.end())
-    throw UserError(fmt::format("frame layout \"{}\": no field \"{}\": expected one of that name", name, field));
+    throw UserError(
+        fmt::format("frame layout \"{}\": no field \"{}\": expected one of that name", name, field));
   return static_cast<std::size_t>(found - fields.begin());
 }
 

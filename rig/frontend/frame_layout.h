@@ -1,5 +1,6 @@
-// FrameLayout: what a telemetry frame looks like, from a layout file (TOML); rig/frontend/default_frame.toml shows
-// every key. Frames have a fixed length: sync bytes, fields anywhere, a counter, a CRC, terminator bytes if wanted.
+// FrameLayout: what a telemetry frame looks like, from a layout file (TOML); rig/frontend/default_frame.toml
+// shows every key. Frames have a fixed length: sync bytes, fields anywhere, a counter, a CRC, terminator
+// bytes if wanted.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -13,11 +14,11 @@
 
 namespace waverig::rig {
 
-enum class FieldType { kUnsigned, kSigned, kFloat };   // float: IEEE 754 of 32 or 64 bits
+enum class FieldType { kUnsigned, kSigned, kFloat };  // float: IEEE 754 of 32 or 64 bits
 enum class ByteOrder { kBig, kLittle };
 
 struct NamedLimits {
-  std::string name;   // e.g. "warning", "alarm"
+  std::string name;  // e.g. "warning", "alarm"
   double low = 0, high = 0;
 };
 
@@ -28,22 +29,23 @@ struct CalibrationPoint {
 struct FrameField {
   std::string name;
   FieldType type = FieldType::kUnsigned;
-  // Big: counted from the most significant bit of the frame's first byte; little: from the least significant one.
+  // Big: counted from the most significant bit of the frame's first byte; little: from the least significant
+  // one.
   int bit_offset = 0;
-  int bits = 16;                            // all within eight bytes
+  int bits = 16;  // all within eight bytes
   ByteOrder order = ByteOrder::kBig;
-  std::string unit{};                       // of value()
-  std::vector<double> polynomial{};         // value = sum c_i raw^i; empty: the raw number
-  std::vector<CalibrationPoint> segments{}; // or straight lines between points, raw ascending
+  std::string unit{};                        // of value()
+  std::vector<double> polynomial{};          // value = sum c_i raw^i; empty: the raw number
+  std::vector<CalibrationPoint> segments{};  // or straight lines between points, raw ascending
   std::vector<NamedLimits> limits{};
 
-  double value(std::int64_t raw) const;     // in unit; raw as the decoder gives it
+  double value(std::int64_t raw) const;  // in unit; raw as the decoder gives it
 };
 
 struct CrcPlacement {
   CrcParameters parameters;
-  int first_byte = 0, last_byte = 0;        // what it covers, both inclusive
-  int byte_offset = 0;                      // where it stands
+  int first_byte = 0, last_byte = 0;  // what it covers, both inclusive
+  int byte_offset = 0;                // where it stands
   ByteOrder order = ByteOrder::kBig;
 };
 
@@ -52,7 +54,7 @@ struct FrameLayout {
   int length_bytes = 0;
   std::vector<std::uint8_t> sync, terminator;
   std::vector<FrameField> fields;
-  std::string counter;                      // name of the field that grows by one a frame; empty: none
+  std::string counter;  // name of the field that grows by one a frame; empty: none
   std::optional<CrcPlacement> crc;
 
   // Index of a field; throws UserError where the layout has none of that name.

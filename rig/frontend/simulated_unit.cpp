@@ -9,12 +9,24 @@
 namespace waverig::rig {
 namespace {
 
-constexpr double kInstant = 1e-9;   // s: shorter pieces are rounding
+constexpr double kInstant = 1e-9;  // s: shorter pieces are rounding
 
-constexpr std::array<const char*, 16> kSlots{
-    "counter",          "utime",  "accel_positive_x", "accel_negative_x", "accel_positive_y", "accel_negative_y",
-    "accel_positive_z", "accel_negative_z", "gyro_x", "gyro_y",           "gyro_z",           "mag_x",
-    "mag_y",            "mag_z",  "temperature",      "status"};
+constexpr std::array<const char*, 16> kSlots{"counter",
+                                             "utime",
+                                             "accel_positive_x",
+                                             "accel_negative_x",
+                                             "accel_positive_y",
+                                             "accel_negative_y",
+                                             "accel_positive_z",
+                                             "accel_negative_z",
+                                             "gyro_x",
+                                             "gyro_y",
+                                             "gyro_z",
+                                             "mag_x",
+                                             "mag_y",
+                                             "mag_z",
+                                             "temperature",
+                                             "status"};
 enum Slot : std::size_t { kCounter, kUtime, kAccel, kGyro = 8, kMag = 11, kTemperature = 14, kStatus };
 
 constexpr double kTemperatureCount_degC = 0.01;
@@ -43,7 +55,9 @@ UnitSettings ideal_unit() {
 
 UnitParameters draw_unit(const UnitSettings& settings, std::uint64_t unit_seed) {
   UnitParameters unit{draw_accelerometer(settings.accelerometer, unit_seed),
-                      draw_gyroscope(settings.gyroscope, unit_seed), {}, Vector3d::Ones()};
+                      draw_gyroscope(settings.gyroscope, unit_seed),
+                      {},
+                      Vector3d::Ones()};
   const FrontEndSettings& f = settings.front_end;
   RandomStream random(unit_seed, "front end unit");
   for (int i = 0; i < 3; ++i) {
@@ -64,15 +78,16 @@ UnitParameters aged(const UnitParameters& unit, const AgeingSettings& ageing, st
   UnitParameters old = unit;
   for (int row = 0; row < 3; ++row) {
     for (int col = 0; col < 3; ++col)
-      old.accelerometer.M(row, col) += random.gaussian(row == col ? ageing.accel_scale : ageing.accel_misalignment);
+      old.accelerometer.M(row, col) +=
+          random.gaussian(row == col ? ageing.accel_scale : ageing.accel_misalignment);
     old.accelerometer.bias_mps2[row] += random.gaussian(ageing.accel_bias_mps2);
     old.gyroscope.offset_radps[row] += random.gaussian(ageing.gyro_offset_radps);
   }
   return old;
 }
 
-SimulatedUnit::SimulatedUnit(const UnitSettings& settings, const UnitParameters& unit, std::uint64_t noise_seed,
-                             const FrameLayout& layout)
+SimulatedUnit::SimulatedUnit(const UnitSettings& settings, const UnitParameters& unit,
+                             std::uint64_t noise_seed, const FrameLayout& layout)
     : settings_(settings),
       unit_(unit),
       encoder_(layout),
@@ -86,7 +101,8 @@ SimulatedUnit::SimulatedUnit(const UnitSettings& settings, const UnitParameters&
       true_interval_s_(settings.sample_interval_s / (1 + settings.front_end.master_clock_error)),
       interval_us_(std::llround(settings.sample_interval_s / kMicrosecond)) {
   if (!(settings.sample_interval_s >= 1e-4 && settings.sample_interval_s <= 10))
-    throw UserError(fmt::format("sensor unit: sample_interval_s = {}: expected 0.0001 to 10 s", settings.sample_interval_s));
+    throw UserError(fmt::format("sensor unit: sample_interval_s = {}: expected 0.0001 to 10 s",
+                                settings.sample_interval_s));
   for (std::size_t i = 0; i < kSlots.size(); ++i) slot_[i] = layout.index_of(kSlots[i]);
 }
 
@@ -99,8 +115,8 @@ SimulatedUnit::Felt SimulatedUnit::feel(const BodyMotion& motion, double dt_s) {
 void SimulatedUnit::begin_interval() {
   phase_s_ = 0;
   sampled_ = false;
-  temperature_degC_ = temperature_degC(settings_.temperature,
-                                       static_cast<double>(interval_utime_ - settings_.power_up_utime) * kMicrosecond);
+  temperature_degC_ = temperature_degC(
+      settings_.temperature, static_cast<double>(interval_utime_ - settings_.power_up_utime) * kMicrosecond);
   accelerometer_.begin_interval(temperature_degC_);
 }
 
@@ -148,7 +164,8 @@ void SimulatedUnit::step(const BodyMotion& motion, double dt_s, std::vector<std:
   double done_s = 0;
   while (dt_s - done_s > kInstant) {
     const double piece_s = std::min(dt_s - done_s, true_interval_s_ - phase_s_);
-    if (const double middle_s = 0.5 * true_interval_s_ - phase_s_; !sampled_ && middle_s <= piece_s + kInstant) {
+    if (const double middle_s = 0.5 * true_interval_s_ - phase_s_;
+        !sampled_ && middle_s <= piece_s + kInstant) {
       const Felt felt = at(done_s + middle_s);
       gyro_ = gyroscope_.sample(felt.w_B, felt.f_B, temperature_degC_);
       if (magnetometer_) mag_ = magnetometer_(motion);

@@ -1,5 +1,5 @@
-// SimulatedUnit: the sensor unit from its motion to frame bytes. It speaks only what the hardware speaks: frames of
-// raw counts, so that acquisition and calibration are really exercised.
+// SimulatedUnit: the sensor unit from its motion to frame bytes. It speaks only what the hardware speaks:
+// frames of raw counts, so that acquisition and calibration are really exercised.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,14 +19,14 @@ namespace waverig::rig {
 // The front end of the accelerometer: a voltage-to-current stage and a charge-balance converter a channel.
 // Nominal values, the same for each channel; how a unit scatters about them.
 struct FrontEndSettings {
-  double transconductance_ApV = 20e-3;       // 4 g, 1.232 V, make 24.6 mA: the range of Kim, Table 1
-  double quantum_C = 24.2e-3 / 256e3;        // 24.2 mA make 256 kHz
+  double transconductance_ApV = 20e-3;  // 4 g, 1.232 V, make 24.6 mA: the range of Kim, Table 1
+  double quantum_C = 24.2e-3 / 256e3;   // 24.2 mA make 256 kHz
   double largest_rate_Hz = 280e3;
-  double transconductance_sigma = 0;         // relative
-  double scale_sigma = 0;                    // of each reset current, relative: DSF_PPP, DSF_NPP
+  double transconductance_sigma = 0;  // relative
+  double scale_sigma = 0;             // of each reset current, relative: DSF_PPP, DSF_NPP
   double bias_sigma_A = 0;
-  double reset_clock_error = 0;              // df_AF
-  double master_clock_error = 0;             // df_MSTR: a fast master oscillator makes intervals short
+  double reset_clock_error = 0;   // df_AF
+  double master_clock_error = 0;  // df_MSTR: a fast master oscillator makes intervals short
 };
 
 // A place that neither turns nor curves.
@@ -41,11 +41,12 @@ struct UnitSettings {
   FrontEndSettings front_end;
   TemperatureSettings temperature;
   double sample_interval_s = 0.01;
-  LocalEarth earth = flat_earth(kStandardGravity);     // at the rig; local_earth(place) for a real one
-  std::int64_t power_up_utime = 0;                     // its temperature runs from here
+  LocalEarth earth = flat_earth(kStandardGravity);  // at the rig; local_earth(place) for a real one
+  std::int64_t power_up_utime = 0;                  // its temperature runs from here
 };
 
-// MMA7331LC, FXAS21000 and an uncalibrated front end (scale within 500 ppm, bias within 0.5 uA), in a laboratory.
+// MMA7331LC, FXAS21000 and an uncalibrated front end (scale within 500 ppm, bias within 0.5 uA), in a
+// laboratory.
 UnitSettings datasheet_unit();
 // Nothing but quantisation: exact sensors on an exact converter.
 UnitSettings ideal_unit();
@@ -82,8 +83,8 @@ class SimulatedUnit {
   using Magnetometer = std::function<Eigen::Vector3i(const BodyMotion&)>;
   void attach(Magnetometer magnetometer) { magnetometer_ = std::move(magnetometer); }
 
-  // The motion as it is dt_s after the last call, linear between; appends a frame for each sample that became due.
-  // The first call, with dt_s = 0, sets the beginning of the first counting interval.
+  // The motion as it is dt_s after the last call, linear between; appends a frame for each sample that became
+  // due. The first call, with dt_s = 0, sets the beginning of the first counting interval.
   void step(const BodyMotion& motion, double dt_s, std::vector<std::uint8_t>& out);
 
   // One-sided density of the accelerometer's white noise, m/s^2 per sqrt(Hz), really used.
@@ -93,7 +94,7 @@ class SimulatedUnit {
   const UnitSettings& settings() const { return settings_; }
 
  private:
-  struct Felt {   // what the sensors answer to at one instant
+  struct Felt {  // what the sensors answer to at one instant
     Vector3d f_B = Vector3d::Zero(), w_B = Vector3d::Zero(), output_mps2 = Vector3d::Zero();
   };
   Felt feel(const BodyMotion& motion, double dt_s);
@@ -107,15 +108,15 @@ class SimulatedUnit {
   Accelerometer accelerometer_;
   Gyroscope gyroscope_;
   std::array<ChargeBalanceConverter, 3> converter_;
-  Vector3d current_ApMps2_;                      // sensor and stage: current a specific force makes
+  Vector3d current_ApMps2_;  // sensor and stage: current a specific force makes
   Magnetometer magnetometer_;
-  std::array<std::size_t, 16> slot_;             // where each value stands in the frame
+  std::array<std::size_t, 16> slot_;  // where each value stands in the frame
   std::vector<std::int64_t> raw_;
 
-  double true_interval_s_;                       // by the unit's own clock it is sample_interval_s
+  double true_interval_s_;                         // by the unit's own clock it is sample_interval_s
   std::int64_t interval_us_, interval_utime_ = 0;  // of the unit's clock
   std::int64_t counter_ = 0;
-  double phase_s_ = 0;                           // since the interval began
+  double phase_s_ = 0;  // since the interval began
   double temperature_degC_ = kReferenceTemperature_degC;
   bool started_ = false, sampled_ = false;
   Felt felt_;

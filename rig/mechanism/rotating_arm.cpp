@@ -35,10 +35,12 @@ RotatingArm::RotatingArm(const RotatingArmSettings& settings, double radius_m)
 }
 
 double RotatingArm::swing_accel(double angle_rad, double rate_radps, const Pivot& pivot) const {
-  return -(pivot.along_mps2 * std::cos(angle_rad) + (settings_.gravity_mps2 + pivot.up_mps2) * std::sin(angle_rad)) *
+  return -(pivot.along_mps2 * std::cos(angle_rad) +
+           (settings_.gravity_mps2 + pivot.up_mps2) * std::sin(angle_rad)) *
              inverse_length_ -
          2 * natural_radps_ *
-             (settings_.pendulum_damping * rate_radps + settings_.bearing_damping * (rate_radps - pivot.rate_radps));
+             (settings_.pendulum_damping * rate_radps +
+              settings_.bearing_damping * (rate_radps - pivot.rate_radps));
 }
 
 // One step of the classical Runge-Kutta method; the pivot's motion is linear within the step.
@@ -79,7 +81,7 @@ const BodyMotion& RotatingArm::advance(const motion::ShaftState& shaft, double d
     swing_forced(arm);
   } else if (started_ && dt_s > 0) {
     swing_freely(pivot_, pivot, dt_s);
-  } else {   // hanging along apparent gravity
+  } else {  // hanging along apparent gravity
     swing_ = {std::atan2(-pivot.along_mps2, settings_.gravity_mps2 + pivot.up_mps2), 0, 0};
     swing_.accel_radps2 = swing_accel(swing_.angle_rad, 0, pivot);
   }
@@ -87,7 +89,8 @@ const BodyMotion& RotatingArm::advance(const motion::ShaftState& shaft, double d
   started_ = true;
 
   // 3. The sensor in the gondola: pitch = swing, turning about the gondola's y axis.
-  const double cp = std::cos(swing_.angle_rad), sp = std::sin(swing_.angle_rad);
+  const double ch = std::cos(0.5 * swing_.angle_rad), sh = std::sin(0.5 * swing_.angle_rad);
+  const double cp = ch * ch - sh * sh, sp = 2 * sh * ch;
   const Vector3d& l = settings_.lever_arm_G_m;
   const double along = cp * l.x() + sp * l.z(), down = -sp * l.x() + cp * l.z();  // lever arm, levelled
   const double dp = swing_.rate_radps, dp2 = dp * dp, ddp = swing_.accel_radps2;
@@ -97,8 +100,8 @@ const BodyMotion& RotatingArm::advance(const motion::ShaftState& shaft, double d
   motion_.utime = utime;
   motion_.position_N = in_N(radius_m_ * c + along - l.x(), radius_m_ * s - down + l.z());
   motion_.velocity_N = in_N(-radius_m_ * s * w + dp * down, radius_m_ * c * w + dp * along);
-  motion_.acceleration_N = in_N(pivot.along_mps2 + ddp * down - dp2 * along, pivot.up_mps2 + ddp * along + dp2 * down);
-  const double ch = std::cos(0.5 * swing_.angle_rad), sh = std::sin(0.5 * swing_.angle_rad);
+  motion_.acceleration_N =
+      in_N(pivot.along_mps2 + ddp * down - dp2 * along, pivot.up_mps2 + ddp * along + dp2 * down);
   motion_.q_NB = q_azimuth_ * Quaterniond(ch, 0, sh, 0) * q_GB_;
   motion_.w_NB_B = R_BG_.col(1) * dp;
   return motion_;

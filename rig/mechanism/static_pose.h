@@ -9,8 +9,8 @@
 namespace waverig::rig {
 
 struct StaticPose {
-  int axis = 2;        // 0, 1, 2: x, y, z of the body
-  double sign = -1;    // +1: the axis points up, so that its specific force is +g
+  int axis = 2;      // 0, 1, 2: x, y, z of the body
+  double sign = -1;  // +1: the axis points up, so that its specific force is +g
   std::string_view name;
 };
 
@@ -22,7 +22,8 @@ inline constexpr std::array<StaticPose, 6> kSixPositions{{{0, +1, "x up"},
                                                           {2, +1, "z up"},
                                                           {2, -1, "z down"}}};
 
-// fixture_error_B: by how much the fixture misses the position, a small rotation vector (rad) in the body frame.
+// fixture_error_B: by how much the fixture misses the position, a small rotation vector (rad) in the body
+// frame.
 inline BodyMotion pose_motion(const StaticPose& pose, const Vector3d& fixture_error_B, std::int64_t utime) {
   BodyMotion motion;
   motion.utime = utime;

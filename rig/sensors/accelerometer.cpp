@@ -58,30 +58,34 @@ Accelerometer::Accelerometer(const AccelerometerSettings& settings, const Accele
                              double interval_s, std::uint64_t noise_seed)
     : settings_(settings),
       unit_(unit),
-      // White noise of one-sided density nd, averaged over T: variance nd^2 / (2 T), independent from mean to mean.
+      // White noise of one-sided density nd, averaged over T: variance nd^2 / (2 T), independent from mean to
+      // mean.
       noise_sigma_(settings.noise_density_mps2 / std::sqrt(2 * interval_s)),
       noise_stream_(noise_seed, "accelerometer noise"),
       instability_stream_(noise_seed, "accelerometer instability"),
-      instability_(settings.instability_sigma_mps2, settings.instability_time_s, interval_s, instability_stream_),
+      instability_(settings.instability_sigma_mps2, settings.instability_time_s, interval_s,
+                   instability_stream_),
       M_now_(unit.M),
       bias_now_(unit.bias_mps2) {
   for (int i = 0; i < 3; ++i)
-    if (settings.bandwidth_Hz[i] > 0) time_constant_s_[i] = 1 / (2 * std::numbers::pi * settings.bandwidth_Hz[i]);
+    if (settings.bandwidth_Hz[i] > 0)
+      time_constant_s_[i] = 1 / (2 * std::numbers::pi * settings.bandwidth_Hz[i]);
 }
 
 void Accelerometer::begin_interval(double temperature_degC) {
   const double warmer_degC = temperature_degC - kReferenceTemperature_degC;
   M_now_ = (Vector3d::Ones() + warmer_degC * unit_.scale_drift_pdegC).asDiagonal() * unit_.M;
-  bias_now_ = unit_.bias_mps2 + warmer_degC * unit_.bias_drift_mps2pdegC + instability_.advance(instability_stream_);
+  bias_now_ =
+      unit_.bias_mps2 + warmer_degC * unit_.bias_drift_mps2pdegC + instability_.advance(instability_stream_);
   if (noise_sigma_ > 0)
     noise_ = {noise_stream_.gaussian(noise_sigma_), noise_stream_.gaussian(noise_sigma_),
               noise_stream_.gaussian(noise_sigma_)};
 }
 
 const Vector3d& Accelerometer::respond(const Vector3d& f_B, double dt_s) {
-  const Vector3d linear = M_now_ * f_B + bias_now_;                                   // 1, 3, 4
+  const Vector3d linear = M_now_ * f_B + bias_now_;  // 1, 3, 4
   Vector3d input;
-  for (int i = 0; i < 3; ++i) {                                                       // 2
+  for (int i = 0; i < 3; ++i) {  // 2
     const double u = linear[i];
     input[i] = u * (1 + u * (unit_.quadratic_pmps2[i] + u * unit_.cubic_pmps4[i]));
   }
@@ -91,15 +95,16 @@ const Vector3d& Accelerometer::respond(const Vector3d& f_B, double dt_s) {
   }
   if (dt_s != decay_dt_s_) {
     decay_dt_s_ = dt_s;
-    for (int i = 0; i < 3; ++i) decay_[i] = time_constant_s_[i] > 0 ? std::exp(-dt_s / time_constant_s_[i]) : 0;
+    for (int i = 0; i < 3; ++i)
+      decay_[i] = time_constant_s_[i] > 0 ? std::exp(-dt_s / time_constant_s_[i]) : 0;
   }
-  for (int i = 0; i < 3; ++i) {                                                       // 5, exact for a linear input
+  for (int i = 0; i < 3; ++i) {  // 5, exact for a linear input
     const double lag = dt_s > 0 ? time_constant_s_[i] * (input[i] - input_[i]) / dt_s : 0;
     filtered_[i] = input[i] - lag + (filtered_[i] - input_[i] + lag) * decay_[i];
   }
   input_ = input;
   output_ = filtered_;
-  if (settings_.range_mps2 > 0)                                                       // 6
+  if (settings_.range_mps2 > 0)  // 6
     output_ = output_.cwiseMax(-settings_.range_mps2).cwiseMin(settings_.range_mps2);
   return output_;
 }

@@ -62,17 +62,18 @@ Gyroscope::Gyroscope(const GyroscopeSettings& settings, const GyroscopeParameter
       counts_per_radps_(1 / gyroscope_count_radps(settings)),
       noise_stream_(noise_seed, "gyroscope noise"),
       instability_stream_(noise_seed, "gyroscope instability"),
-      instability_(settings.instability_sigma_radps, settings.instability_time_s, interval_s, instability_stream_) {}
+      instability_(settings.instability_sigma_radps, settings.instability_time_s, interval_s,
+                   instability_stream_) {}
 
 GyroscopeReading Gyroscope::sample(const Vector3d& w_B_radps, const Vector3d& f_B, double temperature_degC) {
-  Vector3d rate = unit_.M * w_B_radps + unit_.offset_radps;                                      // 1
-  rate += (temperature_degC - kReferenceTemperature_degC) * unit_.offset_drift_radpspdegC;       // 2
-  rate += unit_.g_sensitivity_s_rad_m.cwiseProduct(f_B);                                         // 3
-  rate += instability_.advance(instability_stream_);                                             // 4
-  if (noise_sigma_ > 0)                                                                          // 5
+  Vector3d rate = unit_.M * w_B_radps + unit_.offset_radps;                                 // 1
+  rate += (temperature_degC - kReferenceTemperature_degC) * unit_.offset_drift_radpspdegC;  // 2
+  rate += unit_.g_sensitivity_s_rad_m.cwiseProduct(f_B);                                    // 3
+  rate += instability_.advance(instability_stream_);                                        // 4
+  if (noise_sigma_ > 0)                                                                     // 5
     for (int i = 0; i < 3; ++i) rate[i] += noise_stream_.gaussian(noise_sigma_);
   GyroscopeReading reading;
-  for (int i = 0; i < 3; ++i) {                                                                  // 6
+  for (int i = 0; i < 3; ++i) {  // 6
     double count = std::nearbyint(rate[i] * counts_per_radps_);
     const double limit = settings_.largest_count > 0 ? settings_.largest_count : 2.0e9;
     if (std::abs(count) >= limit) {

@@ -18,15 +18,15 @@ namespace waverig::rig {
 
 // How parts of a type scatter: standard deviations per axis, unless named otherwise.
 struct GyroscopeSettings {
-  double lsb_radps = 0;                      // one count; 0: no quantisation, counts of 1e-6 rad/s
-  std::int32_t largest_count = 0;            // 0: no saturation
-  double noise_density_radps = 0;            // per sqrt(Hz), one-sided
+  double lsb_radps = 0;            // one count; 0: no quantisation, counts of 1e-6 rad/s
+  std::int32_t largest_count = 0;  // 0: no saturation
+  double noise_density_radps = 0;  // per sqrt(Hz), one-sided
   double offset_sigma_radps = 0;
-  double offset_limit_radps = 0;             // no unit is drawn beyond it; 0: none
+  double offset_limit_radps = 0;  // no unit is drawn beyond it; 0: none
   double scale_sigma = 0;
   double misalignment_sigma = 0;
   double offset_drift_sigma_radpspdegC = 0;
-  double g_sensitivity_sigma_s_rad_m = 0;    // rad/s per m/s^2
+  double g_sensitivity_sigma_s_rad_m = 0;  // rad/s per m/s^2
   double instability_sigma_radps = 0;
   double instability_time_s = 200;
 };
@@ -43,7 +43,7 @@ struct GyroscopeParameters {
   Matrix3d M = Matrix3d::Identity();
   Vector3d offset_radps = Vector3d::Zero();
   Vector3d offset_drift_radpspdegC = Vector3d::Zero();
-  Vector3d g_sensitivity_s_rad_m = Vector3d::Zero();   // along each axis, rad/s per m/s^2
+  Vector3d g_sensitivity_s_rad_m = Vector3d::Zero();  // along each axis, rad/s per m/s^2
 };
 
 GyroscopeParameters draw_gyroscope(const GyroscopeSettings& settings, std::uint64_t seed);

@@ -9,9 +9,10 @@
 
 namespace waverig::rig {
 
-inline constexpr double kReferenceTemperature_degC = 25;   // data sheets speak of 25 degC
+inline constexpr double kReferenceTemperature_degC = 25;  // data sheets speak of 25 degC
 
-// offset + amplitude sin(2 pi t / period + phase) + warm_up (1 - exp(-t / warm_up_time)); t since the unit's power-up.
+// offset + amplitude sin(2 pi t / period + phase) + warm_up (1 - exp(-t / warm_up_time)); t since the unit's
+// power-up.
 struct TemperatureSettings {
   double mean_degC = kReferenceTemperature_degC;
   double amplitude_degC = 0;

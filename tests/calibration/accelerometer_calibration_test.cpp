@@ -11,7 +11,7 @@
 namespace waverig::estimator {
 namespace {
 
-AccelerometerCalibration published_unit() {   // Lee 2014, section 2
+AccelerometerCalibration published_unit() {  // Lee 2014, section 2
   AccelerometerCalibration c;
   c.M << 1.0074, -0.0022, 0.0039, -0.0065, 0.9856, 0.0138, -0.0027, 0.0087, 0.9963;
   c.b_mps2 = Vector3d(-0.0354, 0.0081, 0.0041) * kStandardGravity;
@@ -26,7 +26,8 @@ SensorCalibration full_calibration() {
   c.gravity_mps2 = 9.8062;
   c.temperature_degC = 23.5;
   c.accelerometer = published_unit();
-  const Eigen::Matrix<double, 12, 12> A = Eigen::Matrix<double, 12, 12>::Random();
+  c.accelerometer.quadratic_pmps2 << 1e-4, -2e-4, 3e-4;
+  const Matrix15d A = Matrix15d::Random();
   c.accelerometer.covariance = 1e-6 * A * A.transpose();
   c.gyroscope = {{0.01, -0.02, 0.03}, {1e-4, 2e-4, 3e-4}};
   c.residual_rms_mps2 = 1.0 / 3;
@@ -57,6 +58,14 @@ TEST(AccelerometerCorrection, UndoesThePublishedErrorModel) {
   EXPECT_LT((correction(c.M * f + c.b_mps2) - f).norm(), 1e-14);
 }
 
+TEST(AccelerometerCorrection, StraightensABentCharacteristicExactly) {
+  AccelerometerCalibration c = published_unit();
+  c.quadratic_pmps2 << 2e-3 / kStandardGravity, -4e-3 / kStandardGravity, 0;
+  const AccelerometerCorrection correction(c);
+  for (const Vector3d& f : {Vector3d(1.2, -3.4, -9.7), Vector3d(-39, 39, 39), Vector3d(0, 0, 0)})
+    EXPECT_LT((correction(c.reading(f)) - f).norm(), 1e-12);
+}
+
 TEST(AccelerometerCorrection, RefusesWhatIsNoSensor) {
   AccelerometerCalibration c;
   c.M.setZero();
@@ -64,12 +73,16 @@ TEST(AccelerometerCorrection, RefusesWhatIsNoSensor) {
   c = {};
   c.b_mps2.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(AccelerometerCorrection{c}, UserError);
+  c = {};
+  c.quadratic_pmps2.y() = 0.1;
+  EXPECT_THROW(AccelerometerCorrection{c}, UserError);
 }
 
 TEST(AccelerometerCalibration, StatesTheUncertaintyOfACorrectedForceAsSimulationFindsIt) {
   AccelerometerCalibration c = published_unit();
   c.covariance.diagonal().setConstant(1e-8);
-  c.covariance.diagonal().tail<3>().setConstant(4e-6);
+  c.covariance.diagonal().segment<3>(9).setConstant(4e-6);
+  c.covariance.diagonal().tail<3>().setConstant(1e-10);
   const Vector3d f(0.5, -1, -9.6), stated = c.sigma_f_mps2(f);
   RandomStream random(1, "errors");
   Vector3d square = Vector3d::Zero();
@@ -79,8 +92,9 @@ TEST(AccelerometerCalibration, StatesTheUncertaintyOfACorrectedForceAsSimulation
     for (int r = 0; r < 3; ++r) {
       for (int k = 0; k < 3; ++k) wrong.M(r, k) += random.gaussian(1e-4);
       wrong.b_mps2[r] += random.gaussian(2e-3);
+      wrong.quadratic_pmps2[r] += random.gaussian(1e-5);
     }
-    square += (AccelerometerCorrection(wrong)(c.M * f + c.b_mps2) - f).cwiseAbs2();
+    square += (AccelerometerCorrection(wrong)(c.reading(f)) - f).cwiseAbs2();
   }
   const Vector3d found = (square / kRuns).cwiseSqrt();
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i] / stated[i], 1, 0.03);
@@ -98,6 +112,7 @@ TEST(CalibrationFile, GivesBackEveryBitThatWasStored) {
   EXPECT_EQ(back.temperature_degC, c.temperature_degC);
   EXPECT_EQ(back.accelerometer.M, c.accelerometer.M);
   EXPECT_EQ(back.accelerometer.b_mps2, c.accelerometer.b_mps2);
+  EXPECT_EQ(back.accelerometer.quadratic_pmps2, c.accelerometer.quadratic_pmps2);
   EXPECT_EQ(back.accelerometer.covariance, c.accelerometer.covariance);
   EXPECT_EQ(back.gyroscope.offset_radps, c.gyroscope.offset_radps);
   EXPECT_EQ(back.gyroscope.offset_sigma_radps, c.gyroscope.offset_sigma_radps);
@@ -116,11 +131,14 @@ TEST(CalibrationFile, NamesFileAndKeyOfWhatIsWrong) {
   EXPECT_EQ(complaint(text), "");
   EXPECT_NE(complaint("{").find("unit.json: is no JSON"), std::string::npos);
   EXPECT_NE(complaint("[1]").find("/format is missing"), std::string::npos);
-  EXPECT_NE(complaint(with(text, "\"gravity_mps2\"", "\"gravity\"")).find("/gravity_mps2 is missing"), std::string::npos);
+  EXPECT_NE(complaint(with(text, "\"gravity_mps2\"", "\"gravity\"")).find("/gravity_mps2 is missing"),
+            std::string::npos);
   EXPECT_NE(complaint(with(text, "9.8062", "\"much\"")).find("/gravity_mps2 = \"much\": expected a number"),
             std::string::npos);
   EXPECT_NE(complaint(with(text, "1.0074", "7.0")).find("M: expected a matrix"), std::string::npos);
-  EXPECT_NE(complaint(with(text, "1.0074,", "")).find("/accelerometer/M"), std::string::npos);
+  EXPECT_NE(
+      complaint(with(text, "1.0074,", "")).find("/accelerometer/M = [-0.0022,0.0039]: expected 3 lists of 3"),
+      std::string::npos);
   EXPECT_THROW(load_calibration("/nonexistent/unit.json"), UserError);
 }
 

@@ -21,7 +21,7 @@ std::vector<double> white(std::size_t n, double sigma, std::uint64_t seed) {
 TEST(Allan, WhiteNoiseFallsWithTheRootOfTau) {
   const auto points = allan_deviation(white(400000, 0.5, 1), kInterval);
   for (const AllanPoint& p : points) {
-    if (p.degrees < 400) break;   // beyond, the record is too short to say it within the tolerance
+    if (p.degrees < 400) break;  // beyond, the record is too short to say it within the tolerance
     EXPECT_NEAR(p.deviation / (0.5 * std::sqrt(kInterval / p.tau_s)), 1, 4 / std::sqrt(p.degrees)) << p.tau_s;
   }
   EXPECT_DOUBLE_EQ(points.front().tau_s, kInterval);
@@ -36,7 +36,7 @@ TEST(Allan, ARampShowsItsSlope) {
 }
 
 TEST(Allan, FitFindsWhiteNoiseAndRateRandomWalkTogether) {
-  constexpr double kDensity = 0.003, kWalk = 0.0004;   // per sqrt(Hz), one-sided; per s sqrt(s)
+  constexpr double kDensity = 0.003, kWalk = 0.0004;  // per sqrt(Hz), one-sided; per s sqrt(s)
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     auto record = white(600000, kDensity / std::sqrt(2 * kInterval), seed);
     RandomStream random(seed, "walk");
@@ -50,7 +50,8 @@ TEST(Allan, FitFindsWhiteNoiseAndRateRandomWalkTogether) {
 }
 
 TEST(Allan, FitTellsQuantisationFromWhiteNoise) {
-  // Differences of a rounded integral, as a charge-balance converter counts: variance q^2/6, all at high frequency.
+  // Differences of a rounded integral, as a charge-balance converter counts: variance q^2/6, all at high
+  // frequency.
   constexpr double kQuantum = 1e-3;
   RandomStream random(2, "remainder");
   std::vector<double> record(200000);

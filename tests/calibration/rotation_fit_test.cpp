@@ -26,8 +26,8 @@ AccelerometerCalibration some_unit() {
 }
 
 // Turned by hand: slow turns about wandering axes, and the hand's own acceleration.
-std::vector<ImuSample> turned_by_hand(double duration_s, double hand_mps2, double noise_mps2, const Vector3d& gyro_offset,
-                                      std::uint64_t seed) {
+std::vector<ImuSample> turned_by_hand(double duration_s, double hand_mps2, double noise_mps2,
+                                      const Vector3d& gyro_offset, std::uint64_t seed) {
   RandomStream random(seed, "hand");
   const AccelerometerCalibration unit = some_unit();
   constexpr double kStep = 0.01;
@@ -37,10 +37,12 @@ std::vector<ImuSample> turned_by_hand(double duration_s, double hand_mps2, doubl
   for (int k = 0; k * kStep < duration_s; ++k) {
     const double t = k * kStep;
     const bool rest = t < 10;
-    const Vector3d w = rest ? Vector3d(Vector3d::Zero())
-                            : Vector3d(0.8 * std::sin(0.13 * t), 0.7 * std::cos(0.21 * t), 0.6 * std::sin(0.34 * t + 1));
+    const Vector3d w =
+        rest ? Vector3d(Vector3d::Zero())
+             : Vector3d(0.8 * std::sin(0.13 * t), 0.7 * std::cos(0.21 * t), 0.6 * std::sin(0.34 * t + 1));
     const Vector3d a_N = rest ? Vector3d(Vector3d::Zero())
-                              : Vector3d(hand_mps2 * std::sin(2.1 * t + a_phase.x()), hand_mps2 * std::sin(3.3 * t + a_phase.y()),
+                              : Vector3d(hand_mps2 * std::sin(2.1 * t + a_phase.x()),
+                                         hand_mps2 * std::sin(3.3 * t + a_phase.y()),
                                          hand_mps2 * std::sin(4.7 * t + a_phase.z()));
     const Vector3d f = q.conjugate() * (a_N - Vector3d(0, 0, kG));
     ImuSample s;
@@ -95,7 +97,8 @@ TEST(RotationFit, LeavesGapsOut) {
 
 std::vector<ImuSample> recording(const std::string& file) {
   const char* set = std::getenv("WAVERIG_DATA");
-  const std::filesystem::path folder = set != nullptr ? set : std::string(WAVERIG_SOURCE_DIR) + "/../shared/data";
+  const std::filesystem::path folder =
+      set != nullptr ? set : std::string(WAVERIG_SOURCE_DIR) + "/../shared/data";
   std::vector<ImuSample> samples;
   gzFile in = gzopen((folder / file).c_str(), "rb");
   if (in == nullptr) return samples;

@@ -12,14 +12,20 @@ constexpr double kQuantum = 1e-7;
 TEST(ChargeBalance, ConservesChargeToTheRemainderOfOneQuantum) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     RandomStream random(seed, "charge");
-    ConverterChannelSettings s{kQuantum, kQuantum, random.gaussian(1e-2), random.gaussian(1e-2), random.gaussian(1e-6),
-                               random.gaussian(1e-5), 0};
+    ConverterChannelSettings s{kQuantum,
+                               kQuantum,
+                               random.gaussian(1e-2),
+                               random.gaussian(1e-2),
+                               random.gaussian(1e-6),
+                               random.gaussian(1e-5),
+                               0};
     ChargeBalanceConverter converter(s);
     const double K_P = kQuantum * (1 + s.positive_scale_error) / (1 + s.reset_clock_error);
     const double K_N = kQuantum * (1 + s.negative_scale_error) / (1 + s.reset_clock_error);
     double charge = 0, told = 0, time = 0;
     for (int k = 0; k < 2000; ++k) {
-      const double current = 1e-3 * std::sin(0.01 * k) + random.gaussian(1e-4), dt = random.uniform(1e-3, 2e-2);
+      const double current = 1e-3 * std::sin(0.01 * k) + random.gaussian(1e-4),
+                   dt = random.uniform(1e-3, 2e-2);
       converter.integrate(current * dt, dt);
       charge += current * dt;
       time += dt;
@@ -63,7 +69,7 @@ TEST(ChargeBalance, SaysWhenTheResetCurrentCannotKeepUp) {
   const ConverterCounts counts = converter.take();
   EXPECT_TRUE(counts.overloaded);
   EXPECT_EQ(counts.positive, 1000);
-  converter.integrate(0, 1);   // what was beyond is lost, not paid back later
+  converter.integrate(0, 1);  // what was beyond is lost, not paid back later
   EXPECT_LE(converter.take().positive, 1);
 }
 

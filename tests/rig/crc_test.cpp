@@ -13,15 +13,15 @@ namespace {
 
 // Of the RevEng catalogue of parametrised CRC algorithms.
 const std::vector<CrcParameters> kCatalogue{
-    {8, 0x07, 0x00, false, false, 0x00, 0xF4},                          // CRC-8/SMBUS
-    {8, 0x31, 0x00, true, true, 0x00, 0xA1},                            // CRC-8/MAXIM-DOW
-    {12, 0x80F, 0x000, false, true, 0x000, 0xDAF},                      // CRC-12/UMTS: refin and refout differ
-    {16, 0x1021, 0xFFFF, false, false, 0x0000, 0x29B1},                 // CRC-16/IBM-3740
-    {16, 0x1021, 0x0000, true, true, 0x0000, 0x2189},                   // CRC-16/KERMIT
-    {16, 0x8005, 0xFFFF, true, true, 0x0000, 0x4B37},                   // CRC-16/MODBUS
-    {24, 0x864CFB, 0xB704CE, false, false, 0x000000, 0x21CF02},         // CRC-24/OPENPGP
-    {32, 0x04C11DB7, 0xFFFFFFFF, true, true, 0xFFFFFFFF, 0xCBF43926},   // CRC-32/ISO-HDLC
-    {32, 0x04C11DB7, 0xFFFFFFFF, false, false, 0xFFFFFFFF, 0xFC891918}, // CRC-32/BZIP2
+    {8, 0x07, 0x00, false, false, 0x00, 0xF4},                         // CRC-8/SMBUS
+    {8, 0x31, 0x00, true, true, 0x00, 0xA1},                           // CRC-8/MAXIM-DOW
+    {12, 0x80F, 0x000, false, true, 0x000, 0xDAF},                     // CRC-12/UMTS: refin and refout differ
+    {16, 0x1021, 0xFFFF, false, false, 0x0000, 0x29B1},                // CRC-16/IBM-3740
+    {16, 0x1021, 0x0000, true, true, 0x0000, 0x2189},                  // CRC-16/KERMIT
+    {16, 0x8005, 0xFFFF, true, true, 0x0000, 0x4B37},                  // CRC-16/MODBUS
+    {24, 0x864CFB, 0xB704CE, false, false, 0x000000, 0x21CF02},        // CRC-24/OPENPGP
+    {32, 0x04C11DB7, 0xFFFFFFFF, true, true, 0xFFFFFFFF, 0xCBF43926},  // CRC-32/ISO-HDLC
+    {32, 0x04C11DB7, 0xFFFFFFFF, false, false, 0xFFFFFFFF, 0xFC891918},  // CRC-32/BZIP2
 };
 
 TEST(Crc, PassesItsSelfTestForTheCatalogue) {

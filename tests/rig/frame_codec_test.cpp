@@ -49,7 +49,7 @@ TEST(FrameCodec, GivesBackEveryFieldOfAnyTypePlaceAndOrder) {
   l.crc = CrcPlacement{{}, 0, 61, 62, ByteOrder::kLittle};
   RandomStream random(3, "fields");
   int bit = 8;
-  while (bit < 8 * 60) {   // fields of all widths, one after the other, in alternating order
+  while (bit < 8 * 60) {  // fields of all widths, one after the other, in alternating order
     FrameField f;
     f.name = std::to_string(bit);
     f.bits = std::min(1 + static_cast<int>(random.uniform(0, 57)), 8 * 62 - bit);
@@ -58,8 +58,10 @@ TEST(FrameCodec, GivesBackEveryFieldOfAnyTypePlaceAndOrder) {
     f.order = (bit / 8) % 2 == 0 ? ByteOrder::kBig : ByteOrder::kLittle;
     if (f.order == ByteOrder::kLittle && f.bit_offset % 8 != 0) f.order = ByteOrder::kBig;
     bit += f.bits;
-    if (f.order == ByteOrder::kLittle) bit = (bit + 7) / 8 * 8;   // the other order counts from the other end
-    else if (random.uniform() < 0.3) bit = (bit + 7) / 8 * 8;
+    if (f.order == ByteOrder::kLittle)
+      bit = (bit + 7) / 8 * 8;  // the other order counts from the other end
+    else if (random.uniform() < 0.3)
+      bit = (bit + 7) / 8 * 8;
     l.fields.push_back(f);
   }
   ASSERT_GT(l.fields.size(), 10U);
@@ -97,7 +99,7 @@ TEST(FrameCodec, StandsOnTheWireAsTheLayoutSays) {
 }
 
 TEST(FrameDecoder, DoesNotCareHowTheBytesArrive) {
-  const Bytes all = joined(frames_of(65530, 20));   // over the counter's wrap
+  const Bytes all = joined(frames_of(65530, 20));  // over the counter's wrap
   for (std::size_t piece = 1; piece < 100; piece += 7) {
     FrameDecoder decoder(layout());
     std::int64_t n = 0;
@@ -142,10 +144,13 @@ TEST(FrameDecoder, LosesNoIntactFrameAtFivePercentCorruptedFramesOfEveryKind) {
       if (random.uniform() < 0.05) {
         const auto at = static_cast<std::size_t>(random.uniform(0, static_cast<double>(frame.size())));
         const double kind = random.uniform();
-        if (kind < 0.5) frame[at] ^= static_cast<std::uint8_t>(1 + random.bits() % 255);   // a wrong byte
-        else if (kind < 0.75) frame.erase(frame.begin() + static_cast<std::ptrdiff_t>(at));   // a lost one
-        else frame.resize(at);                                                              // cut short
-        if (kind > 0.9) wire.insert(wire.end(), {0xEB, 0x90, 0x00});                        // and a false beginning
+        if (kind < 0.5)
+          frame[at] ^= static_cast<std::uint8_t>(1 + random.bits() % 255);  // a wrong byte
+        else if (kind < 0.75)
+          frame.erase(frame.begin() + static_cast<std::ptrdiff_t>(at));  // a lost one
+        else
+          frame.resize(at);                                           // cut short
+        if (kind > 0.9) wire.insert(wire.end(), {0xEB, 0x90, 0x00});  // and a false beginning
       } else {
         intact.push_back(n);
       }
@@ -176,12 +181,12 @@ TEST(FrameDecoder, LosesNoIntactFrameAtFivePercentCorruptedBytes) {
   }
   FrameDecoder decoder(layout());
   EXPECT_EQ(counters(decoder, wire), intact);
-  EXPECT_LT(intact.size(), 4000U);   // about 0.95^40 of them
+  EXPECT_LT(intact.size(), 4000U);  // about 0.95^40 of them
 }
 
 TEST(FrameDecoder, DropsAFrameWhoseCounterTheNextOneDoesNotBearOut) {
   auto frames = frames_of(100, 10);
-  frames.insert(frames.begin() + 5, frames_of(40000, 1)[0]);   // as a broken frame that its CRC let pass
+  frames.insert(frames.begin() + 5, frames_of(40000, 1)[0]);  // as a broken frame that its CRC let pass
   FrameDecoder decoder(layout());
   const auto found = counters(decoder, joined(frames));
   EXPECT_EQ(found.size(), 10U);
@@ -194,7 +199,8 @@ TEST(FrameDecoder, FollowsAUnitThatStartsAnew) {
   auto frames = frames_of(30000, 5);
   for (const Bytes& f : frames_of(0, 5)) frames.push_back(f);
   FrameDecoder decoder(layout());
-  EXPECT_EQ(counters(decoder, joined(frames)), (std::vector<std::int64_t>{30000, 30001, 30002, 30003, 30004, 0, 1, 2, 3, 4}));
+  EXPECT_EQ(counters(decoder, joined(frames)),
+            (std::vector<std::int64_t>{30000, 30001, 30002, 30003, 30004, 0, 1, 2, 3, 4}));
   EXPECT_EQ(decoder.statistics().restarts, 1);
 }
 
@@ -220,7 +226,7 @@ TEST(FrameDecoder, SurvivesNoise) {
   Bytes noise(1000);
   for (int run = 0; run < 1000; ++run) {
     for (auto& byte : noise) {
-      const double kind = random.uniform();   // sync bytes far more often than chance has them
+      const double kind = random.uniform();  // sync bytes far more often than chance has them
       byte = kind < 0.1 ? 0xEB : kind < 0.2 ? 0x90 : static_cast<std::uint8_t>(random.bits());
     }
     const auto size = static_cast<std::size_t>(random.uniform(0, 1000));
@@ -230,7 +236,7 @@ TEST(FrameDecoder, SurvivesNoise) {
   EXPECT_EQ(decoder.statistics().frames, 0);
   EXPECT_GT(decoder.statistics().broken, 1000);
   const Bytes good = joined(frames_of(500, 10));
-  EXPECT_GE(counters(decoder, good).size(), 9U);   // the noise may have swallowed the first one's beginning
+  EXPECT_GE(counters(decoder, good).size(), 9U);  // the noise may have swallowed the first one's beginning
 }
 
 }  // namespace

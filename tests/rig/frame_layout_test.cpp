@@ -81,7 +81,7 @@ TEST(FrameLayout, ConvertsRawNumbersByPolynomialAndSegments) {
   EXPECT_DOUBLE_EQ(layout.fields[0].value(200), 200);
   EXPECT_DOUBLE_EQ(layout.fields[1].value(-5), -0.5);
   EXPECT_DOUBLE_EQ(layout.fields[1].value(5), 1.5);
-  EXPECT_DOUBLE_EQ(layout.fields[1].value(20), 6);   // the last line goes on
+  EXPECT_DOUBLE_EQ(layout.fields[1].value(20), 6);  // the last line goes on
   EXPECT_DOUBLE_EQ(layout.fields[2].value(std::bit_cast<std::int32_t>(2.0F)), 1 + 4 + 12);
 }
 

@@ -31,7 +31,8 @@ motion::ShaftState surging(double t) {
   return {0.9 * t + 0.4 * std::sin(1.1 * t), 0.9 + 0.44 * std::cos(1.1 * t), -0.484 * std::sin(1.1 * t)};
 }
 
-std::vector<BodyMotion> motions(RotatingArm& arm, double duration_s, const std::function<motion::ShaftState(double)>& shaft) {
+std::vector<BodyMotion> motions(RotatingArm& arm, double duration_s,
+                                const std::function<motion::ShaftState(double)>& shaft) {
   std::vector<BodyMotion> all{arm.advance(shaft(0), 0, 0)};
   for (std::int64_t k = 1; static_cast<double>(k) * kStep <= duration_s; ++k)
     all.push_back(arm.advance(shaft(static_cast<double>(k) * kStep), kStep, k * kStep_us));
@@ -81,10 +82,10 @@ TEST(RotatingArm, GondolaDecaysAsADampedPendulumOfSmallAngle) {
   s.pendulum_damping = 0.1;
   RotatingArm arm(s, 0.01);
   const double w0 = std::sqrt(s.gravity_mps2 / 0.25), wd = w0 * std::sqrt(1 - 0.01), decay = 0.1 * w0;
-  arm.advance({0, 2, 0}, 0, 0);   // turning: it hangs aside
+  arm.advance({0, 2, 0}, 0, 0);  // turning: it hangs aside
   const double start = arm.swing_rad();
   EXPECT_NEAR(start, 0.01 * 4 / s.gravity_mps2, 1e-4 * start);
-  arm.advance({0, 0, 0}, 1e-9, 0);   // and stops
+  arm.advance({0, 0, 0}, 1e-9, 0);  // and stops
   for (int k = 1; k <= 2000; ++k) {
     arm.advance({0, 0, 0}, kStep, k * kStep_us);
     const double t = k * kStep;
@@ -101,10 +102,12 @@ TEST(RotatingArm, GondolaAnswersTheArmAsADrivenPendulumOfSmallAngle) {
   RotatingArm arm(s, kRadius);
   const auto m = motions(arm, 40, [](double t) { return turning(t, kPeriod); });
   double largest = 0;
-  for (std::size_t k = m.size() - 1000; k < m.size(); ++k) largest = std::max(largest, euler_of(m[k].q_NB).pitch_rad);
+  for (std::size_t k = m.size() - 1000; k < m.size(); ++k)
+    largest = std::max(largest, euler_of(m[k].q_NB).pitch_rad);
   const double w = 2 * std::numbers::pi / kPeriod, w0 = std::sqrt(s.gravity_mps2 / 0.25);
   const double expected = kRadius * w * w / 0.25 / std::hypot(w0 * w0 - w * w, 2 * 0.15 * w0 * w);
-  EXPECT_NEAR(largest, expected, 0.005 * expected);   // the closed form leaves out vertical acceleration, 0.2 % of g
+  EXPECT_NEAR(largest, expected,
+              0.005 * expected);  // the closed form leaves out vertical acceleration, 0.2 % of g
 }
 
 TEST(RotatingArm, FollowsApparentGravityWhenTheWaveIsLong) {
@@ -112,7 +115,7 @@ TEST(RotatingArm, FollowsApparentGravityWhenTheWaveIsLong) {
   const auto m = motions(arm, 60, [](double t) { return turning(t, 12); });
   for (std::size_t k = 5000; k < m.size(); ++k) {
     const Vector3d f = specific_force_B(m[k], {0, 0, kStandardGravity});
-    EXPECT_LT(std::hypot(f.x(), f.y()), 0.03 * 0.137);   // of the horizontal acceleration, 0.137 m/s^2
+    EXPECT_LT(std::hypot(f.x(), f.y()), 0.03 * 0.137);  // of the horizontal acceleration, 0.137 m/s^2
   }
 }
 
@@ -123,7 +126,7 @@ TEST(RotatingArm, ForcedTiltHasItsAmplitudeAndPhase) {
   RotatingArm arm(s, 0.5);
   const BodyMotion m = arm.advance({50 * kDegree, 0.5, 0}, kStep, 0);
   EXPECT_NEAR(euler_of(m.q_NB).pitch_rad, 5 * kDegree, 1e-12);
-  EXPECT_NEAR(m.w_NB_B.norm(), 0, 1e-12);   // at its turning point
+  EXPECT_NEAR(m.w_NB_B.norm(), 0, 1e-12);  // at its turning point
 }
 
 TEST(RotatingArm, SagLowersTheLevelArmAndLeavesTheUprightOne) {
@@ -149,7 +152,7 @@ TEST(StaticPose, PutsGravityOnOneAxis) {
     EXPECT_LT((f - pose.sign * 9.8 * Vector3d::Unit(pose.axis)).norm(), 1e-12) << pose.name;
   }
   const Vector3d missed = specific_force_B(pose_motion(kSixPositions[4], {0.01, 0, 0}, 0), {0, 0, 9.8});
-  EXPECT_NEAR(missed.y(), 9.8 * std::sin(0.01), 1e-12);   // f x error: z up, turned about x
+  EXPECT_NEAR(missed.y(), 9.8 * std::sin(0.01), 1e-12);  // f x error: z up, turned about x
 }
 
 }  // namespace

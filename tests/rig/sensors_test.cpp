@@ -36,8 +36,10 @@ TEST(Accelerometer, EachEffectIsOffByItsOwnZero) {
     double AccelerometerSettings::*sigma;
     bool changes_unit;
   };
-  for (const Case& c : {Case{&AccelerometerSettings::bias_sigma_mps2, true}, {&AccelerometerSettings::scale_sigma, true},
-                        {&AccelerometerSettings::misalignment_sigma, true}, {&AccelerometerSettings::nonlinearity_sigma, true},
+  for (const Case& c : {Case{&AccelerometerSettings::bias_sigma_mps2, true},
+                        {&AccelerometerSettings::scale_sigma, true},
+                        {&AccelerometerSettings::misalignment_sigma, true},
+                        {&AccelerometerSettings::nonlinearity_sigma, true},
                         {&AccelerometerSettings::bias_drift_sigma_mps2pdegC, true},
                         {&AccelerometerSettings::scale_drift_sigma_pdegC, true},
                         {&AccelerometerSettings::instability_sigma_mps2, false},
@@ -58,7 +60,7 @@ TEST(Accelerometer, EachEffectIsOffByItsOwnZero) {
 
 TEST(Accelerometer, ReproducesThePublishedUnit) {
   const AccelerometerParameters unit = lee2014_accelerometer();
-  const Vector3d out = settled({}, unit, {kG, 0, 0}) / kG;   // x up: first column of M, and b
+  const Vector3d out = settled({}, unit, {kG, 0, 0}) / kG;  // x up: first column of M, and b
   EXPECT_LT((out - Vector3d(1.0074 - 0.0354, -0.0065 + 0.0081, -0.0027 + 0.0041)).norm(), 1e-12);
 }
 
@@ -83,8 +85,10 @@ TEST(Accelerometer, BendsAsFarFromTheBestStraightLineAsDrawn) {
   const double span = 8 * kG, bend = 0.002;
   for (const bool even : {true, false}) {
     AccelerometerParameters unit;
-    if (even) unit.quadratic_pmps2.setConstant(4 * bend / s.range_mps2);
-    else unit.cubic_pmps4.setConstant(8 * bend / (s.range_mps2 * s.range_mps2));
+    if (even)
+      unit.quadratic_pmps2.setConstant(4 * bend / s.range_mps2);
+    else
+      unit.cubic_pmps4.setConstant(8 * bend / (s.range_mps2 * s.range_mps2));
     AccelerometerSettings wide = s;
     wide.range_mps2 = 0;
     // The smallest largest deviation from any straight line a + b u, by a fine search.
@@ -104,9 +108,10 @@ TEST(Accelerometer, BendsAsFarFromTheBestStraightLineAsDrawn) {
 
 TEST(Accelerometer, NoUnitIsDrawnBeyondItsNonlinearityLimit) {
   AccelerometerSettings s = mma7331lc();
-  s.nonlinearity_sigma = 0.02;   // so that most would be
+  s.nonlinearity_sigma = 0.02;  // so that most would be
   for (std::uint64_t seed = 0; seed < 100; ++seed)
-    EXPECT_LE(draw_accelerometer(s, seed).quadratic_pmps2.cwiseAbs().maxCoeff(), 4 * 0.01 / s.range_mps2 * (1 + 1e-12));
+    EXPECT_LE(draw_accelerometer(s, seed).quadratic_pmps2.cwiseAbs().maxCoeff(),
+              4 * 0.01 / s.range_mps2 * (1 + 1e-12));
 }
 
 TEST(Accelerometer, DriftsWithTemperature) {
@@ -128,10 +133,10 @@ TEST(Accelerometer, LowPassHasItsGainAndStepResponse) {
     const double out = sensor.respond({std::sin(2 * std::numbers::pi * 20 * k * dt), 0, 0}, dt).x();
     if (k > 1000) largest = std::max(largest, out);
   }
-  EXPECT_NEAR(largest, 1 / std::hypot(1, 2), 5e-3);   // a sine of 50 points a period, straight between them
+  EXPECT_NEAR(largest, 1 / std::hypot(1, 2), 5e-3);  // a sine of 50 points a period, straight between them
   Accelerometer step(s, {}, kInterval, 1);
   step.respond({0, 0, 0}, 0);
-  const double ramp = step.respond({1, 0, 0}, dt).x();   // linear within a step: exact for any step
+  const double ramp = step.respond({1, 0, 0}, dt).x();  // linear within a step: exact for any step
   EXPECT_NEAR(ramp, 1 - tau / dt * (1 - std::exp(-dt / tau)), 1e-12);
   double out = 0;
   for (int k = 1; k <= 20; ++k) out = step.respond({1, 0, 0}, dt).x();
@@ -177,8 +182,8 @@ TEST(Accelerometer, SigmaMeansSigma) {
   EXPECT_NEAR(terms.one_sided_density() / s.noise_density_mps2, 1, 0.01);
 }
 
-Vector3d mean_reading(const GyroscopeSettings& s, const GyroscopeParameters& unit, const Vector3d& w, const Vector3d& f,
-                      double temperature = kReferenceTemperature_degC) {
+Vector3d mean_reading(const GyroscopeSettings& s, const GyroscopeParameters& unit, const Vector3d& w,
+                      const Vector3d& f, double temperature = kReferenceTemperature_degC) {
   Gyroscope sensor(s, unit, kInterval, 1);
   Vector3d sum = Vector3d::Zero();
   for (int k = 0; k < 2000; ++k) sum += sensor.sample(w, f, temperature).counts.cast<double>();

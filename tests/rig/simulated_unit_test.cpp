@@ -23,8 +23,8 @@ struct Recording {
 
 // motion(t) for duration_s, as the acquisition reads it by nominal sensitivities.
 template <class Motion>
-Recording record(const UnitSettings& settings, const UnitParameters& parameters, double duration_s, Motion&& motion,
-                 std::uint64_t noise_seed = 1) {
+Recording record(const UnitSettings& settings, const UnitParameters& parameters, double duration_s,
+                 Motion&& motion, std::uint64_t noise_seed = 1) {
   SimulatedUnit unit(settings, parameters, noise_seed);
   Acquisition acquisition(nominal_sensitivities(settings));
   Recording r;
@@ -34,7 +34,8 @@ Recording record(const UnitSettings& settings, const UnitParameters& parameters,
     return m;
   };
   unit.step(at(0), 0, r.bytes);
-  for (std::int64_t k = 1; static_cast<double>(k) * kStep < duration_s + 0.5 * kStep; ++k) unit.step(at(k), kStep, r.bytes);
+  for (std::int64_t k = 1; static_cast<double>(k) * kStep < duration_s + 0.5 * kStep; ++k)
+    unit.step(at(k), kStep, r.bytes);
   acquisition.add(r.bytes, [&](const UnitCounts& c, const estimator::ImuSample& s) {
     r.counts.push_back(c);
     r.samples.push_back(s);
@@ -52,14 +53,16 @@ Vector3d mean_force(const Recording& r) {
   return sum / static_cast<double>(r.samples.size());
 }
 
-const double kQuantum_mps = ideal_unit().front_end.quantum_C / nominal_sensitivities(ideal_unit()).current_per_accel_ApMps2;
+const double kQuantum_mps =
+    ideal_unit().front_end.quantum_C / nominal_sensitivities(ideal_unit()).current_per_accel_ApMps2;
 
 TEST(SimulatedUnit, FeelsMinusGravityAtRestAndLevel) {
   const Recording r = record(ideal_unit(), draw_unit(ideal_unit(), 1), 10, level);
   ASSERT_EQ(r.samples.size(), 1000U);
   EXPECT_LT((mean_force(r) - Vector3d(0, 0, -kG)).norm(), kQuantum_mps / 10 * 1.01);
   EXPECT_EQ(r.samples[5].w_NB_B, Vector3d::Zero());
-  EXPECT_NEAR(mean_force(record(ideal_unit(), draw_unit(ideal_unit(), 1), 10, at_rest)).z(), kG, kQuantum_mps / 10 * 1.01);
+  EXPECT_NEAR(mean_force(record(ideal_unit(), draw_unit(ideal_unit(), 1), 10, at_rest)).z(), kG,
+              kQuantum_mps / 10 * 1.01);
 }
 
 TEST(SimulatedUnit, FeelsNothingInFreeFall) {
@@ -92,7 +95,8 @@ TEST(SimulatedUnit, CountsConserveTheIntegralOfSpecificForce) {
   for (std::size_t k = 0; k < r.samples.size(); ++k) {
     velocity += r.samples[k].f_B * 0.01;
     const double t = 0.01 * static_cast<double>(k + 1);
-    const Vector3d exact(1.5 * (1 - std::cos(2 * t)), 0.4 * std::sin(5 * t), (1 - std::cos(9 * t)) / 6 - kG * t);
+    const Vector3d exact(1.5 * (1 - std::cos(2 * t)), 0.4 * std::sin(5 * t),
+                         (1 - std::cos(9 * t)) / 6 - kG * t);
     // One quantum, and the trapezoidal rule's error over the base step.
     EXPECT_LT((velocity - exact).cwiseAbs().maxCoeff(), kQuantum_mps + 2e-5);
   }
@@ -128,11 +132,11 @@ TEST(SimulatedUnit, NoiseThroughTheWholePathHasTheDensityItStates) {
 
 TEST(SimulatedUnit, ClockErrorChangesTheIntervalAndNotTheStamps) {
   UnitSettings s = ideal_unit();
-  s.front_end.master_clock_error = 1e-2;   // fast: short intervals
+  s.front_end.master_clock_error = 1e-2;  // fast: short intervals
   const Recording r = record(s, draw_unit(s, 1), 100, level);
   EXPECT_NEAR(static_cast<double>(r.samples.size()), 10100, 1);
   EXPECT_EQ(r.samples[1000].utime - r.samples[0].utime, 10'000'000);
-  EXPECT_NEAR(mean_force(r).z(), -kG / 1.01, 1e-4);   // fewer counts in an interval
+  EXPECT_NEAR(mean_force(r).z(), -kG / 1.01, 1e-4);  // fewer counts in an interval
 }
 
 TEST(SimulatedUnit, FlagsWhatIsBeyondItsRange) {
@@ -156,7 +160,7 @@ TEST(SimulatedUnit, FlagsWhatIsBeyondItsRange) {
     m.w_NB_B = {0, 300 * kDegree, 0};
     return m;
   }));
-  s.accelerometer.range_mps2 = 0;   // an unlimited sensor drives the converter beyond its own range
+  s.accelerometer.range_mps2 = 0;  // an unlimited sensor drives the converter beyond its own range
   EXPECT_TRUE(flagged(pulled(6 * kG)));
 }
 
@@ -165,7 +169,13 @@ TEST(SimulatedUnit, IsTheSameForTheSameSeedsToTheByte) {
   RotatingArm arm({}, 0.5);
   const auto run = [&](std::uint64_t unit_seed, std::uint64_t noise_seed) {
     RotatingArm fresh({}, 0.5);
-    return record(s, draw_unit(s, unit_seed), 5, [&](double t) { return fresh.advance({t, 1, 0}, kStep, 0); }, noise_seed).bytes;
+    return record(
+               s, draw_unit(s, unit_seed), 5,
+               [&](double t) {
+                 return fresh.advance({t, 1, 0}, kStep, 0);
+               },
+               noise_seed)
+        .bytes;
   };
   EXPECT_EQ(run(1, 2), run(1, 2));
   EXPECT_NE(run(1, 2), run(1, 3));
@@ -191,7 +201,9 @@ TEST(SimulatedUnit, CarriesAThirdSensor) {
     ++samples;
   });
   EXPECT_EQ(samples, 1);
-  EXPECT_NE(record(ideal_unit(), draw_unit(ideal_unit(), 1), 0.1, level).samples[0].flags & flag::kNoMagnetometer, 0);
+  EXPECT_NE(
+      record(ideal_unit(), draw_unit(ideal_unit(), 1), 0.1, level).samples[0].flags & flag::kNoMagnetometer,
+      0);
 }
 
 TEST(SimulatedUnit, AgeMovesAUnitAsFarAsStated) {
