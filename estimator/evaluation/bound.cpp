@@ -5,10 +5,17 @@
 #include <numbers>
 
 namespace waverig::evaluation {
+namespace {
+
+constexpr double kFewest = 5, kMost = 1e7;  // samples of a wave
+
+}  // namespace
 
 double height_bound_m(const BoundSettings& settings) {
-  const auto samples = std::llround(settings.period_s * settings.sample_rate_hz);
-  if (samples < 5 || !std::isfinite(settings.noise_density_mps2_rthz)) return estimator::kUnknown;
+  const double wanted = settings.period_s * settings.sample_rate_hz;
+  if (!(wanted >= kFewest && wanted <= kMost) || !std::isfinite(settings.noise_density_mps2_rthz))
+    return estimator::kUnknown;
+  const auto samples = std::llround(wanted);
   const double w = 2 * std::numbers::pi / settings.period_s;
   // White noise of one-sided density nd has variance nd^2 rate / 2 at each sample.
   const double variance =

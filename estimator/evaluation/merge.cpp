@@ -91,9 +91,15 @@ CampaignResults merged(std::span<const fs::path> shards) {
   return all;
 }
 
-CampaignResults merge_into(const fs::path& out, std::span<const fs::path> shards,
-                           const std::string& command) {
+CampaignResults merge_into(const fs::path& out, std::span<const fs::path> shards, const std::string& command,
+                           std::span<const std::string> expected_runs) {
   CampaignResults results = merged(shards);
+  for (const std::string& run : expected_runs)
+    if (std::none_of(results.runs.begin(), results.runs.end(),
+                     [&](const RunResult& r) { return r.run == run; }))
+      throw UserError(
+          fmt::format("{} and {} more: no shard holds run '{}'; expected all shards of the campaign",
+                      shards.front().string(), shards.size() - 1, run));
   results.command = command;
   std::error_code error;
   if (fs::exists(out) && !fs::is_empty(out, error))

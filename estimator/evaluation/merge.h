@@ -15,8 +15,9 @@ namespace waverig::evaluation {
 CampaignResults merged(std::span<const std::filesystem::path> shards);
 
 // Writes the merged results into `out`, which must not exist yet or be empty: settings, calibration and every
-// run's log are copied, results.csv and results.json written last.
+// run's log are copied, results.csv and results.json written last. Throws UserError where one of
+// expected_runs, the runs of the whole campaign, is in no shard.
 CampaignResults merge_into(const std::filesystem::path& out, std::span<const std::filesystem::path> shards,
-                           const std::string& command);
+                           const std::string& command, std::span<const std::string> expected_runs);
 
 }  // namespace waverig::evaluation

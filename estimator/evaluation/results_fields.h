@@ -56,8 +56,14 @@ class Reader {
   Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
     if (!json_.is_object()) throw UserError(where_ + ": expected an object");
   }
+  // A number that is missing is unknown, as null is: older versions knew fewer.
   void operator()(const char* key, double& value) {
-    const Json& j = at(key);
+    const auto found = json_.find(key);
+    if (found == json_.end()) {
+      value = estimator::kUnknown;
+      return;
+    }
+    const Json& j = *found;
     if (!j.is_null() && !j.is_number()) throw wrong(key, "a number or null");
     value = j.is_null() ? estimator::kUnknown : j.get<double>();
   }
@@ -215,6 +221,8 @@ inline void Writer::operator()(const char* key, const JudgedSea& sea) {
 }
 
 inline void Reader::operator()(const char* key, JudgedSea& sea) {
+  sea = {};
+  if (!json_.contains(key)) return;
   Reader reader(at(key), fmt::format("{}, {}", where_, key));
   fields(reader, sea);
 }

@@ -1,7 +1,9 @@
 #include "estimator/evaluation/run_judge.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <waverig/run_t.hpp>
 #include <waverig/truth_t.hpp>
 
@@ -18,6 +20,16 @@ namespace {
 struct TrueSea {
   double hm0_m = estimator::kUnknown, tm02_s = estimator::kUnknown;
 };
+
+constexpr double kLongestSpan_s = 1e6;  // of a wave or a sea state; messages of a bus are not to be trusted
+
+// End of a span; none where its length is no plausible one, or the time itself is not.
+std::optional<std::int64_t> end_of(std::int64_t begin_utime, double length_s) {
+  constexpr std::int64_t kLatest = std::numeric_limits<std::int64_t>::max() / 2;
+  if (!(length_s > 0) || !(length_s < kLongestSpan_s) || std::abs(begin_utime / 2) > kLatest / 2)
+    return std::nullopt;
+  return begin_utime + std::llround(length_s / kMicrosecond);
+}
 
 TrueSea true_sea(const TruthSeries& truth, std::int64_t begin, std::int64_t end) {
   double n = 0, h = 0, hh = 0, r = 0, rr = 0;
@@ -78,6 +90,7 @@ void RunJudge::add(std::string_view method, const estimator::HeaveSample& heave)
 
 void RunJudge::add(std::string_view method, const estimator::Wave& wave) {
   OfMethod& m = of(method);
+  if (!m.waves.empty() && m.waves.back().start_utime == wave.start_utime) return;  // sent twice
   m.waves.push_back(wave);
   m.series = {};
 }
@@ -91,10 +104,11 @@ bool RunJudge::steady(std::int64_t utime) const {
 }
 
 void RunJudge::settle(OfMethod& method) {
-  std::size_t done = 0;
-  while (done < method.pending.size() && method.pending[done].utime <= truth_.last_utime())
-    compare(method.comparison, method.pending[done++]);
-  method.pending.erase(method.pending.begin(), method.pending.begin() + static_cast<std::ptrdiff_t>(done));
+  std::erase_if(method.pending, [&](const Heave& heave) {
+    if (heave.utime > truth_.last_utime()) return false;
+    compare(method.comparison, heave);
+    return true;
+  });
 }
 
 void RunJudge::compare(HeaveComparison& comparison, const Heave& heave) const {
@@ -129,21 +143,21 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
   result.height_m = height_m_;
   result.noise_density_mps2_rthz = settings_.noise_density_mps2_rthz;
   for (const estimator::SeaState& sea : method.seas) {
-    const TrueSea truth =
-        true_sea(truth_, sea.start_utime, sea.start_utime + std::llround(sea.duration_s / kMicrosecond));
+    const auto end = end_of(sea.start_utime, sea.duration_s);
+    const TrueSea truth = end ? true_sea(truth_, sea.start_utime, *end) : TrueSea{};
     result.seas.push_back({sea, truth.hm0_m, truth.tm02_s});
   }
 
   if (method.waves.empty()) method.waves = counted_waves(method);
   HeightAccumulator accumulator;
   for (const estimator::Wave& wave : method.waves) {
-    const std::int64_t end = wave.start_utime + std::llround(wave.period_s / kMicrosecond);
-    const bool whole = (wave.flags & flag::kIncomplete) == 0 && std::isfinite(wave.height_m);
-    if (!whole || !begun_ || wave.start_utime < steady_begin_ || end > steady_end_) {
+    const auto end = end_of(wave.start_utime, wave.period_s);
+    const bool whole = end && (wave.flags & flag::kIncomplete) == 0 && std::isfinite(wave.height_m);
+    if (!whole || !begun_ || wave.start_utime < steady_begin_ || *end > steady_end_) {
       ++result.excluded_waves;
       continue;
     }
-    result.waves.push_back({wave, truth_.height_m(wave.start_utime, end)});
+    result.waves.push_back({wave, truth_.height_m(wave.start_utime, *end)});
     accumulator.add(result.waves.back());
   }
   accumulator.close_record();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "estimator/evaluation/results_io.h"
+#include "rig/campaign/plan.h"
 #include "rig/cli/commands.h"
 
 namespace waverig::cli {
@@ -24,7 +25,11 @@ int merge(const MergeArguments& arguments) {
   const std::vector<std::filesystem::path> shards(arguments.shards.begin(), arguments.shards.end());
   const std::string command =
       fmt::format("waverig merge {} --out {}", fmt::join(arguments.shards, " "), arguments.out);
-  const auto results = evaluation::merge_into(arguments.out, shards, command);
+  const rig::Campaign campaign = rig::read_campaign(shards.front() / "campaign.toml");
+  std::vector<std::string> expected_runs;
+  for (const rig::RunPlan& run : rig::plan_campaign(campaign.settings).runs)
+    expected_runs.push_back(run.name);
+  const auto results = evaluation::merge_into(arguments.out, shards, command, expected_runs);
   fmt::print("{}", evaluation::results_csv(results.cells));
   return 0;
 }
@@ -38,7 +43,7 @@ void add_merge(CLI::App& app, Command& chosen) {
       ->required();
   command->add_option("--out", arguments->out, "Results directory, made anew")->required();
   command->footer(
-      "Refuses shards of different settings, seed or version, and shards that share a run.\n"
+      "Refuses shards of different settings, seed or version, shards that share a run, and too few of them.\n"
       "Example:\n  waverig merge results/part* --out results/all");
   command->callback([arguments, &chosen] { chosen = [arguments] { return merge(*arguments); }; });
 }

@@ -53,7 +53,7 @@ class Merge : public ::testing::Test {
 
   std::string refusal(const std::vector<fs::path>& shards) {
     try {
-      merge_into(scratch.path() / "out", shards, "merge");
+      merge_into(scratch.path() / "out", shards, "merge", expected);
     } catch (const UserError& error) {
       EXPECT_FALSE(fs::exists(scratch.path() / "out" / "results.json"));
       return error.what();
@@ -65,12 +65,13 @@ class Merge : public ::testing::Test {
   std::string version = "1";
   std::uint64_t seed = 1;
   bool complete = true;
+  std::vector<std::string> expected;
 };
 
 TEST_F(Merge, GivesWhatOneMachineWouldHaveGiven) {
   const auto whole = shard("whole", {run("a", 6, 0), run("b", 6, 1), run("c", 12, 0)});
   const auto one = shard("one", {run("c", 12, 0), run("a", 6, 0)}), two = shard("two", {run("b", 6, 1)});
-  merge_into(scratch.path() / "out", std::vector{two, one}, "merge");
+  merge_into(scratch.path() / "out", std::vector{two, one}, "merge", std::vector<std::string>{"a", "b", "c"});
   EXPECT_EQ(Scratch::read(scratch.path() / "out" / "results.csv"), Scratch::read(whole / "results.csv"));
   EXPECT_EQ(read_results(scratch.path() / "out").runs.size(), 3u);
   for (const char* log : {"a", "b", "c"})
@@ -103,6 +104,13 @@ TEST_F(Merge, RefusesARunThatTwoShardsHold) {
   EXPECT_NE(said.find("both hold run 'a'"), std::string::npos) << said;
   EXPECT_NE(said.find(one.string()), std::string::npos) << said;
   EXPECT_NE(said.find(two.string()), std::string::npos) << said;
+}
+
+TEST_F(Merge, RefusesTooFewShards) {
+  expected = {"a", "b", "c"};
+  const auto one = shard("one", {run("a", 6, 0)}), two = shard("two", {run("b", 6, 1)});
+  const std::string said = refusal({one, two});
+  EXPECT_NE(said.find("no shard holds run 'c'"), std::string::npos) << said;
 }
 
 TEST_F(Merge, RefusesAnUnfinishedShardAndAFullDirectory) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <waverig/run_t.hpp>
 #include <waverig/truth_t.hpp>
@@ -133,6 +134,54 @@ TEST(RunJudge, StatesTheBoundOfTheOrderedPeriod) {
     if (t == 18 * kSecond) judge.add("m", wave_at(t, 0.58));
   });
   EXPECT_NEAR(judge.finish().at(0).statistics.bound_std_m, dense_height_bound_m(kPeriod, 3e-3), 1e-9);
+}
+
+// Any program may publish: nonsense is counted as excluded, never followed.
+TEST(RunJudge, IsNotLedAstrayByNonsenseOnTheBus) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kHuge = 1e300;
+  constexpr auto kLast = std::numeric_limits<std::int64_t>::max(),
+                 kFirst = std::numeric_limits<std::int64_t>::min();
+  RunJudge judge("run", {.noise_density_mps2_rthz = 1e-3});
+  play(judge, [&](std::int64_t t) {
+    if (t != 18 * kSecond) return;
+    for (const double period_s : {kNan, -1.0, 0.0, kHuge})
+      for (const std::int64_t start : {t, kLast, kFirst}) {
+        estimator::Wave wave = wave_at(start, 0.6);
+        wave.period_s = period_s;
+        judge.add("m", wave);
+        estimator::SeaState sea;
+        sea.start_utime = start;
+        sea.duration_s = period_s;
+        judge.add("m", sea);
+        estimator::HeaveSample heave;
+        heave.utime = start;
+        heave.heave_m = period_s;
+        judge.add("h", heave);
+      }
+    judge.add("m", wave_at(t + 1, kNan));
+    judge.add("m", wave_at(t, 0.58));
+  });
+  run_t strange = phase(Phase::kStopped, kLast);
+  strange.period_s = kHuge;
+  judge.add(strange);
+  const auto results = judge.finish();
+  EXPECT_EQ(results.at(1).method, "m");
+  EXPECT_EQ(results.at(1).statistics.waves, 1);
+  EXPECT_TRUE(std::isnan(results.at(1).statistics.bound_std_m));
+}
+
+TEST(RunJudge, CountsTheWavesOfAMethodThatGivesHeaveOnly) {
+  RunJudge judge("run", {});
+  play(judge, [&](std::int64_t t) {
+    estimator::HeaveSample h;
+    h.utime = t;
+    h.heave_m = 1.02 * true_heave(t);
+    judge.add("theirs", h);
+  });
+  const RunResult r = judge.finish().at(0);
+  EXPECT_EQ(r.statistics.waves, 7);  // from up-crossing to up-crossing, 16.5 s to 58.5 s
+  EXPECT_NEAR(r.statistics.mean_error_percent, 2, 0.01);
+  EXPECT_NEAR(r.statistics.mean_period_s, kPeriod, 1e-3);
 }
 
 TEST(RunJudge, WithoutTruthOrSteadyPartJudgesNothing) {
