@@ -15,6 +15,7 @@ using std::numbers::pi;
 
 constexpr std::size_t kNeighbours = 4;   // on either side: noise and mean force are told together
 constexpr std::size_t kEvenly = 4;       // waves that share one frequency run evenly
+constexpr double kContradiction = 4;      // standard deviations
 
 // Calls visit(wave j) for k and its unbroken neighbours, as far as kNeighbours.
 template <class Visit>
@@ -24,12 +25,24 @@ void for_neighbours(const std::vector<RegularWave>& waves, std::size_t k, const 
   for (std::size_t j = k + 1; j < waves.size() && j - k <= kNeighbours && waves[j].follows; ++j) visit(waves[j]);
 }
 
-// Drift of the acceleration across wave k, from the offsets of the waves beside it.
+// Standard deviation of a wave's offset from white noise.
+double offset_sigma(const RegularWave& wave) {
+  return wave.noise_density / std::sqrt(2 * (wave.fit.end_s - wave.fit.begin_s));
+}
+
+double slope_between(const WaveFit& a, const WaveFit& b) { return (b.offset_mps2 - a.offset_mps2) / (b.middle_s - a.middle_s); }
+
+// Drift of the acceleration across wave k, from the offsets of the waves beside it. A wave that speeds up or slows down
+// has a mean acceleration of its own, which is no drift of the sensor: where the two sides contradict each other beyond
+// the noise, the quieter one is believed.
 double drift_mps3(const std::vector<RegularWave>& waves, std::size_t k) {
-  const WaveFit& before = waves[k > 0 && waves[k].follows ? k - 1 : k].fit;
-  const WaveFit& after = waves[k + 1 < waves.size() && waves[k + 1].follows ? k + 1 : k].fit;
-  const double dt = after.middle_s - before.middle_s;
-  return dt > 0 ? (after.offset_mps2 - before.offset_mps2) / dt : 0.0;
+  const bool has_before = k > 0 && waves[k].follows, has_after = k + 1 < waves.size() && waves[k + 1].follows;
+  if (!has_before || !has_after) return 0.0;
+  const WaveFit &before = waves[k - 1].fit, &here = waves[k].fit, &after = waves[k + 1].fit;
+  const double rising = slope_between(before, here), falling = slope_between(here, after);
+  const double noise = kContradiction * std::sqrt(6.0) * offset_sigma(waves[k]) / (here.end_s - here.begin_s);
+  if (std::abs(rising - falling) <= noise) return slope_between(before, after);
+  return std::abs(rising) < std::abs(falling) ? rising : falling;
 }
 
 std::vector<RegularWave> first_fits(const WaveSeries& series, double period_s) {
@@ -112,10 +125,15 @@ void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves
                  const RegularWaveSettings& settings, const SensorKnowledge& knowledge, RegularWave& wave) {
   const double w = wave.fit.omega_radps, sigma = amplitude_sigma(wave), raw = wave.fit.amplitude_mps2();
   // Only waves that run evenly have no mean acceleration of their own.
+  std::vector<double> offsets;
+  for_neighbours(waves, k, [&](const RegularWave& other) { offsets.push_back(other.fit.offset_mps2); });
+  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
+  std::nth_element(offsets.begin(), middle, offsets.end());
   double mean_up = 0, seconds = 0;
   for_neighbours(waves, k, [&](const RegularWave& other) {
     const double ratio = other.timing.period_s / wave.timing.period_s;
     if (other.timing.waves < kEvenly || std::abs(ratio - 1) > settings.settled_period) return;
+    if (std::abs(other.fit.offset_mps2 - *middle) > kContradiction * offset_sigma(wave)) return;
     mean_up += other.fit.offset_mps2 * other.timing.period_s;
     seconds += other.timing.period_s;
   });
