@@ -73,6 +73,8 @@ motion::EnvelopeSettings read_envelope(TomlTable rig) {
   s.min_radius_m = rig.number("min_radius_m", s.min_radius_m, {0.001, 100});
   s.max_radius_m = rig.number("max_radius_m", s.max_radius_m, {s.min_radius_m, 100});
   s.max_centripetal_mps2 = rig.number("max_centripetal_mps2", s.max_centripetal_mps2, {0, 1000});
+  s.breaking = rig.choice("breaking_waves", "warn", {"warn", "refuse"}) == "warn" ? motion::Verdict::kWarn
+                                                                                    : motion::Verdict::kRefuse;
   TomlTable axis = rig.table("axis");
   s.limits.rate_radps = axis.number("max_rate_radps", s.limits.rate_radps, {0.01, 1000});
   s.limits.accel_radps2 = axis.number("max_accel_radps2", s.limits.accel_radps2, {0.01, 10000});
