@@ -9,14 +9,14 @@
 #include "render/figures/accuracy.h"
 #include "render/figures/calibration.h"
 #include "render/figures/direction.h"
+#include "render/figures/methods.h"
 #include "render/figures/noise.h"
 
 namespace waverig::render {
 namespace {
 
-constexpr const char* kPaperMethod = "lee2014";
-
-// work(canvas, i) for i = 0 … n - 1, each on one of the threads with a canvas of its own.
+// work(canvas, i) for i = 0 … n - 1, each on one of the threads with a canvas
+// of its own.
 template <class Work>
 void on_threads(int threads, std::size_t n, Work work) {
   std::atomic<std::size_t> next{0};
@@ -33,7 +33,8 @@ void on_threads(int threads, std::size_t n, Work work) {
     }
   };
   std::vector<std::jthread> pool;
-  for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(std::max(1, threads)), n); ++t) pool.emplace_back(worker);
+  for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(std::max(1, threads)), n); ++t)
+    pool.emplace_back(worker);
   worker();
   pool.clear();
   if (failure) std::rethrow_exception(failure);
@@ -44,7 +45,9 @@ void on_threads(int threads, std::size_t n, Work work) {
 const evaluation::RunResult* paper_run(const evaluation::CampaignResults& results) {
   const evaluation::RunResult* best = nullptr;
   for (const evaluation::RunResult& run : results.runs) {
-    const auto rank = [](const evaluation::RunResult& r) { return std::tuple(r.period_s, r.height_m, -r.repeat); };
+    const auto rank = [](const evaluation::RunResult& r) {
+      return std::tuple(r.period_s, r.height_m, -r.repeat);
+    };
     if (best == nullptr || rank(run) > rank(*best)) best = &run;
   }
   return best;
@@ -59,32 +62,39 @@ std::vector<NamedFigure> result_figures(const evaluation::CampaignResults& resul
   figures.push_back({"frequency-response", frequency_response_figure(results)});
   figures.push_back({"single-waves", single_waves_figure(results)});
   figures.push_back({"uncertainty-budget", uncertainty_budget_figure(results)});
-  if (auto figure = calibration_figure(results.calibration_json)) figures.push_back({"calibration", std::move(*figure)});
+  if (auto figure = calibration_figure(results.calibration_json))
+    figures.push_back({"calibration", std::move(*figure)});
   if (auto figure = direction_figure(results)) figures.push_back({"directions", std::move(*figure)});
   return figures;
 }
 
-std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results, const evaluation::RunRecord& run, const FigureOptions& options) {
+std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
+                                     const evaluation::RunRecord& run, const FigureOptions& options) {
   std::vector<NamedFigure> figures;
-  const PaperTraces calibrated = recorded_traces(run, kPaperMethod);
+  const PaperTraces calibrated = recorded_traces(run, kBaselineMethod);
   const PaperTraces raw = options.uncalibrated ? options.uncalibrated(run) : PaperTraces{};
   const PaperTraces& shown = raw.empty() ? calibrated : raw;
   if (!shown.heave.empty()) {
     figures.push_back({"paper-4-inertial-data", inertial_data_figure(run, shown, raw.empty())});
     figures.push_back({"paper-5-uncorrected-trace", uncorrected_trace_figure(run, shown, raw.empty())});
   }
-  if (!raw.empty()) figures.push_back({"paper-6-without-calibration", corrected_trace_figure(run, raw, false)});
-  if (!calibrated.heave.empty()) figures.push_back({"paper-7-with-calibration", corrected_trace_figure(run, calibrated, true)});
+  if (!raw.empty())
+    figures.push_back({"paper-6-without-calibration", corrected_trace_figure(run, raw, false)});
+  if (!calibrated.heave.empty())
+    figures.push_back({"paper-7-with-calibration", corrected_trace_figure(run, calibrated, true)});
   double noise = kAuto;
   for (const evaluation::RunResult& result : results.runs) {
     if (result.run == run.run) noise = result.noise_density_mps2_rthz;
   }
   figures.push_back({"spectra", spectra_figure(run, noise)});
-  if (const RestRecords rest = rest_of(run); !rest.empty()) figures.push_back({"allan-deviation", allan_figure(rest)});
+  if (const RestRecords rest = rest_of(run); !rest.empty())
+    figures.push_back({"allan-deviation", allan_figure(rest)});
   return figures;
 }
 
-std::vector<std::filesystem::path> write_figures(const std::vector<NamedFigure>& figures, const std::filesystem::path& out, const FigureOptions& options) {
+std::vector<std::filesystem::path> write_figures(const std::vector<NamedFigure>& figures,
+                                                 const std::filesystem::path& out,
+                                                 const FigureOptions& options) {
   std::filesystem::create_directories(out);
   std::vector<std::filesystem::path> paths(figures.size());
   on_threads(options.threads, figures.size(), [&](Canvas& canvas, std::size_t i) {
@@ -97,10 +107,13 @@ std::vector<std::filesystem::path> write_figures(const std::vector<NamedFigure>&
   return paths;
 }
 
-std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::CampaignResults& results, const std::filesystem::path& runs,
-                                                         const std::filesystem::path& out, const FigureOptions& options) {
+std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::CampaignResults& results,
+                                                         const std::filesystem::path& runs,
+                                                         const std::filesystem::path& out,
+                                                         const FigureOptions& options) {
   std::vector<NamedFigure> figures;
-  if (const evaluation::RunResult* run = paper_run(results)) figures = run_figures(results, evaluation::load_run(runs / (run->run + ".lcm")), options);
+  if (const evaluation::RunResult* run = paper_run(results))
+    figures = run_figures(results, evaluation::load_run(runs / (run->run + ".lcm")), options);
   for (NamedFigure& figure : result_figures(results)) figures.push_back(std::move(figure));
   return write_figures(figures, out, options);
 }

@@ -68,6 +68,13 @@ const Image& Canvas::draw(int width_px, int height_px, Color background,
 }
 
 void Canvas::draw_over(const RenderTarget& picture, const std::function<void(Painter&)>& paint) {
+  draw_over(picture, {0, 0, static_cast<float>(picture.width_px()), static_cast<float>(picture.height_px())},
+            paint);
+}
+
+void Canvas::draw_over(const RenderTarget& picture, const Rect& area,
+                       const std::function<void(Painter&)>& paint) {
+  context_.make_current();
   if (fonts_.bake()) {
     unsigned char* texels = nullptr;
     int width = 0, height = 0;
@@ -75,19 +82,22 @@ void Canvas::draw_over(const RenderTarget& picture, const std::function<void(Pai
     glBindTexture(GL_TEXTURE_2D, font_texture_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, width, height, 0, GL_RED, GL_UNSIGNED_BYTE, texels);
-    // Texels always fall on pixels; nearest keeps text independent of where the atlas holds it.
+    // Texels always fall on pixels; nearest keeps text independent of where the
+    // atlas holds it.
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   }
-  DrawListPainter painter(fonts_, picture.width_px(), picture.height_px());
+  DrawListPainter painter(fonts_, static_cast<int>(area.width()), static_cast<int>(area.height()));
   paint(painter);
   picture.bind();
-  submit(painter.list(), picture.width_px(), picture.height_px());
+  submit(painter.list(), area);
 }
 
-void Canvas::submit(const ImDrawList& list, int width_px, int height_px) {
+void Canvas::submit(const ImDrawList& list, const Rect& area) {
+  const auto left = static_cast<GLint>(area.left), top = static_cast<GLint>(area.top);
+  glViewport(left, top, static_cast<GLsizei>(area.width()), static_cast<GLsizei>(area.height()));
   glUseProgram(program_);
-  glUniform2f(half_size_, 0.5F * static_cast<float>(width_px), 0.5F * static_cast<float>(height_px));
+  glUniform2f(half_size_, 0.5F * area.width(), 0.5F * area.height());
   glBindVertexArray(vertex_array_);
   glBindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
@@ -112,8 +122,8 @@ void Canvas::submit(const ImDrawList& list, int width_px, int height_px) {
   for (const ImDrawCmd& command : list.CmdBuffer) {
     const ImVec4& clip = command.ClipRect;
     if (command.ElemCount == 0 || clip.z <= clip.x || clip.w <= clip.y) continue;
-    glScissor(static_cast<GLint>(clip.x), static_cast<GLint>(clip.y), static_cast<GLsizei>(clip.z - clip.x),
-              static_cast<GLsizei>(clip.w - clip.y));
+    glScissor(left + static_cast<GLint>(clip.x), top + static_cast<GLint>(clip.y),
+              static_cast<GLsizei>(clip.z - clip.x), static_cast<GLsizei>(clip.w - clip.y));
     glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), GL_UNSIGNED_SHORT,
                              reinterpret_cast<const void*>(command.IdxOffset * sizeof(ImDrawIdx)),
                              static_cast<GLint>(command.VtxOffset));

@@ -1,4 +1,5 @@
-// Canvas: one thread's renderer. Keeps context, shader and font texture warm from figure to figure.
+// Canvas: one thread's renderer. Keeps context, shader and font texture warm
+// from figure to figure.
 #pragma once
 #include <functional>
 #include <memory>
@@ -18,19 +19,22 @@ class Canvas {
   FontBook& fonts() { return fonts_; }
   GlContext& context() { return context_; }
 
-  // Draws onto a picture of that size, filled with the background. Fonts and characters must be required
-  // before. The picture stays until the next one is drawn.
+  // Draws onto a picture of that size, filled with the background. Fonts and
+  // characters must be required before. The picture stays until the next one is
+  // drawn.
   const Image& draw(int width_px, int height_px, Color background,
                     const std::function<void(Painter&)>& paint);
-  // The same over what the bound target already shows (labels over a scene); read it back with read().
+  // The same over what a target already shows (labels over a scene), whole or
+  // in a part of it that then is the painter's page; read it back with read().
   void draw_over(const RenderTarget& target, const std::function<void(Painter&)>& paint);
+  void draw_over(const RenderTarget& target, const Rect& area, const std::function<void(Painter&)>& paint);
   const Image& read(const RenderTarget& target);
   // Of PNG files, with its buffers kept.
   PngEncoder& png() { return png_; }
 
  private:
   RenderTarget& target(int width_px, int height_px);
-  void submit(const ImDrawList& list, int width_px, int height_px);
+  void submit(const ImDrawList& list, const Rect& area);
 
   GlContext context_;
   FontBook fonts_;

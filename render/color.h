@@ -1,4 +1,5 @@
-// Colours: palette, themes and colour maps that colour-blind readers can tell apart.
+// Colours: palette, themes and colour maps that colour-blind readers can tell
+// apart.
 #pragma once
 #include <cstdint>
 
@@ -26,12 +27,14 @@ struct ThemeColors {
 };
 const ThemeColors& theme_colors(Theme theme);
 
-// Okabe & Ito (2008), reordered so that neighbours differ in lightness too; lightened on the dark theme.
+// Okabe & Ito (2008), reordered so that neighbours differ in lightness too;
+// lightened on the dark theme.
 Color palette(Theme theme, int index);
 inline constexpr int kPaletteSize = 7;
 
 enum class ColorMap { kSequential, kDiverging };
-// share 0 to 1. Sequential: cividis (Nunez et al. 2018). Diverging: blue to white to vermillion, 0.5 neutral.
+// share 0 to 1. Sequential: cividis (Nunez et al. 2018). Diverging: blue to
+// white to vermillion, 0.5 neutral.
 Color color_of(ColorMap map, double share);
 // Relative luminance of WCAG 2; text on a colour is white below 0.35.
 float luminance(Color color);

@@ -14,8 +14,8 @@ Vec2 operator*(float k, Vec2 a) { return {k * a.x, k * a.y}; }
 float dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 Vec2 left_of(Vec2 d) { return {d.y, -d.x}; }
 
-// One antialiased line of a draw list: rows of four vertices (transparent, full, full, transparent) across
-// it.
+// One antialiased line of a draw list: rows of four vertices (transparent,
+// full, full, transparent) across it.
 class Ribbon {
  public:
   Ribbon(ImDrawList& list, Color color, float width_px)
@@ -75,10 +75,12 @@ DrawListPainter::DrawListPainter(FontBook& fonts, int width_px, int height_px)
   list_.PushClipRectFullScreen();
 }
 
-// Mitred where the line turns gently; where it turns back sharply the ribbon ends half a width beyond the
-// point and a new one begins, so that a spike of one sample keeps its full height.
+// Mitred where the line turns gently; where it turns back sharply the ribbon
+// ends half a width beyond the point and a new one begins, so that a spike of
+// one sample keeps its full height.
 void DrawListPainter::stroke(std::span<const Vec2> points, Color color, float width_px) {
-  constexpr float kCoincident = 0.02F, kSharpest = 0.2F;  // px; cosine of the turn
+  constexpr float kCoincident = 0.02F,
+                  kSharpest = 0.2F;  // px; cosine of the turn
   std::vector<Vec2> line;
   line.reserve(points.size());
   for (const Vec2 p : points) {
@@ -120,7 +122,8 @@ void DrawListPainter::fill_convex(std::span<const Vec2> corners, Color color) {
   list_.AddConvexPolyFilled(points.data(), static_cast<int>(points.size()), packed(color));
 }
 
-// Neighbouring quads share their edge exactly, so no seam shows where the colour is transparent.
+// Neighbouring quads share their edge exactly, so no seam shows where the
+// colour is transparent.
 void DrawListPainter::fill_between(std::span<const Vec2> upper, std::span<const Vec2> lower, Color color) {
   const ImU32 c = packed(color);
   const ImVec2 uv = shared_.TexUvWhitePixel;
@@ -142,8 +145,8 @@ void DrawListPainter::text(Vec2 at, std::string_view utf8, const TextStyle& styl
   const float along = style.h == HAlign::kLeft ? 0 : style.h == HAlign::kCenter ? -0.5F * width : -width;
   const float down = style.v == VAlign::kBaseline ? 0 : style.v == VAlign::kMiddle ? 0.5F * cap : cap;
   const float origin_x = std::round(at.x), origin_y = std::round(at.y);
-  // In a frame where the text runs right and its baseline lies at 0; whole pixels, so that texels fall on
-  // pixels.
+  // In a frame where the text runs right and its baseline lies at 0; whole
+  // pixels, so that texels fall on pixels.
   float pen = std::round(along);
   const float top = std::round(down) - std::round(font.Ascent);
   const ImU32 color = packed(style.color);

@@ -1,4 +1,5 @@
-// Painter into an ImDrawList: everything becomes triangles of one vertex buffer, with antialiased edges.
+// Painter into an ImDrawList: everything becomes triangles of one vertex
+// buffer, with antialiased edges.
 #pragma once
 #include <imgui.h>
 #include <imgui_internal.h>

@@ -1,13 +1,16 @@
-// A figure as plain values: panels of marks on two axes. Nothing here draws; see figure_writer.h.
+// A figure as plain values: panels of marks on two axes. Nothing here draws;
+// see figure_writer.h.
 //
 //   Figure figure{.title = "Heave"};
-//   figure.panels.push_back({.x = {.label = "Time", .unit = "s"}, .y = {.label = "Heave", .unit = "m"},
-//                            .marks = {Line{.x = t_s, .y = heave_m, .name = "truth"}}});
+//   figure.panels.push_back({.x = {.label = "Time", .unit = "s"}, .y = {.label
+//   = "Heave", .unit = "m"},
+//                            .marks = {Line{.x = t_s, .y = heave_m, .name =
+//                            "truth"}}});
 //   Canvas canvas;
 //   save_png(figure, canvas, "heave.png", {});
 //
-// Every mark takes what it gets: NaN breaks a line, unequal lengths are cut to the shorter, an empty panel
-// says so.
+// Every mark takes what it gets: NaN breaks a line, unequal lengths are cut to
+// the shorter, an empty panel says so.
 #pragma once
 #include <limits>
 #include <optional>
@@ -30,8 +33,10 @@ struct Axis {
   std::string label{};
   std::string unit{};  // shown in brackets behind the label
   Scale scale = Scale::kLinear;
-  double low = kAuto, high = kAuto;       // limits; equal or reversed ones are put right
-  std::vector<std::string> categories{};  // names at 0, 1, 2, … instead of numbers; '\n' breaks a name
+  double low = kAuto,
+         high = kAuto;                    // limits; equal or reversed ones are put right
+  std::vector<std::string> categories{};  // names at 0, 1, 2, … instead of
+                                          // numbers; '\n' breaks a name
   double padding = kAuto;                 // share of the range left free at both ends
   bool include_zero = false;
   bool whole_numbers = false;  // ticks at integers only
@@ -65,9 +70,9 @@ struct Bars {
   std::vector<double> at{}, value{};
   std::string name{};
   Look look{};
-  std::vector<double> base{};   // where each begins, 0 by default; a single one holds for all
-  double width = 0.8;       // in units of the axis
-  bool horizontal = false;  // `at` along y
+  std::vector<double> base{};  // where each begins, 0 by default; a single one holds for all
+  double width = 0.8;          // in units of the axis
+  bool horizontal = false;     // `at` along y
 };
 
 struct ErrorBars {
@@ -96,8 +101,10 @@ struct HeatMap {
   std::vector<double> values{};              // row by row of y, NaN left blank
   std::string label{}, unit{};               // of the colour bar
   ColorMap map = ColorMap::kSequential;
-  double low = kAuto, high = kAuto;  // of the colour bar; diverging: symmetric about 0 by default
+  double low = kAuto, high = kAuto;  // of the colour bar; diverging: symmetric
+                                     // about 0 by default
   bool log_colors = false;
+  bool color_bar = true;             // false where another panel's bar serves
   int decimals = -1;                 // of the number written into each cell; -1: none
   std::vector<std::string> texts{};  // written into the cells instead of the numbers
 };
@@ -120,7 +127,8 @@ struct Span {
 };
 
 struct Note {
-  double x = 0.02, y = 0.98;  // share of the panel from its lower left corner, or data where in_data is set
+  double x = 0.02, y = 0.98;  // share of the panel from its lower left corner,
+                              // or data where in_data is set
   std::string text{};         // '\n' breaks it
   bool in_data = false;
   int color = kInk;

@@ -13,14 +13,20 @@ const Image& draw(const Figure& figure, Canvas& canvas) {
                      [&](Painter& painter) { paint(figure, painter, canvas.fonts()); });
 }
 
+std::vector<std::pair<std::string, std::string>> embedded_text(const std::string& title,
+                                                               const Provenance& provenance) {
+  std::vector<std::pair<std::string, std::string>> text;
+  if (!title.empty()) text.emplace_back("Title", title);
+  if (!provenance.version.empty()) text.emplace_back("Software", "waverig " + provenance.version);
+  if (!provenance.seed.empty()) text.emplace_back("Seed", provenance.seed);
+  if (!provenance.command.empty()) text.emplace_back("Command", provenance.command);
+  return text;
+}
+
 const std::vector<std::uint8_t>& png_bytes(const Figure& figure, Canvas& canvas,
                                            const Provenance& provenance) {
-  PngSettings settings{.dots_per_inch = figure.dots_per_inch, .text = {}};
-  if (!figure.title.empty()) settings.text.emplace_back("Title", figure.title);
-  if (!provenance.version.empty()) settings.text.emplace_back("Software", "waverig " + provenance.version);
-  if (!provenance.seed.empty()) settings.text.emplace_back("Seed", provenance.seed);
-  if (!provenance.command.empty()) settings.text.emplace_back("Command", provenance.command);
-  return canvas.png().encode(draw(figure, canvas), settings);
+  return canvas.png().encode(draw(figure, canvas), {.dots_per_inch = figure.dots_per_inch,
+                                                    .text = embedded_text(figure.title, provenance)});
 }
 
 void save_png(const Figure& figure, Canvas& canvas, const std::filesystem::path& path,

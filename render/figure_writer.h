@@ -10,15 +10,20 @@
 
 namespace waverig::render {
 
-// The picture stays until the canvas draws the next. Throws UserError where the figure has no sensible size
-// (1 to 16384 pixels a side).
+// The picture stays until the canvas draws the next. Throws UserError where the
+// figure has no sensible size (1 to 16384 pixels a side).
 const Image& draw(const Figure& figure, Canvas& canvas);
 
-// What is embedded in a file, so that a picture found alone still tells where it comes from.
+// What is embedded in a file, so that a picture found alone still tells where
+// it comes from.
 struct Provenance {
   std::string version, command;
   std::string seed;
 };
+
+// Text chunks of a PNG.
+std::vector<std::pair<std::string, std::string>> embedded_text(const std::string& title,
+                                                               const Provenance& provenance);
 
 const std::vector<std::uint8_t>& png_bytes(const Figure& figure, Canvas& canvas,
                                            const Provenance& provenance);

@@ -10,14 +10,18 @@
 namespace waverig::render {
 namespace {
 
-const char* const kFontFolder =
-    "/usr/share/fonts/truetype/";     // of Debian's fonts-dejavu-core and fonts-nanum
-constexpr float kLinePerEm = 1.164F;  // DejaVu Sans, ascent + descent: what ImGui calls the size of a font
+const char* const kFontFolder = "/usr/share/fonts/truetype/";  // of Debian's fonts-dejavu-core and
+                                                               // fonts-nanum
+constexpr float kLinePerEm = 1.164F;                           // DejaVu Sans, ascent + descent: what
+                                                               // ImGui calls the size of a font
 
 // Always baked, so that the common figure bakes once.
 constexpr std::string_view kCommon =
-    " !\"#$%&'()*+,-./0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_`abcdefghijklmnopqrstuvwxyz{|}~"
-    "\u00B0\u00B1\u00B2\u00B3\u00B5\u00B7\u00D7\u2013\u2026\u2212\u221A\u2070\u00B9\u2074\u2075\u2076\u2077"
+    " !\"#$%&'()*+,-./"
+    "0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_`"
+    "abcdefghijklmnopqrstuvwxyz{|}~"
+    "\u00B0\u00B1\u00B2\u00B3\u00B5\u00B7\u00D7\u2013\u2026\u2212\u221A\u2070"
+    "\u00B9\u2074\u2075\u2076\u2077"
     "\u2078"
     "\u2079\u207B\u03B1\u03B2\u03B8\u03C3\u03C6\u03C8\u0394\u2264\u2265\uFFFD";
 

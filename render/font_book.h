@@ -1,5 +1,6 @@
-// FontBook: DejaVu Sans regular and bold at the sizes a figure needs, Nanum Gothic behind it for Hangul.
-// Glyphs are baked on demand and drawn on whole pixels, so that text is the same whatever was drawn before.
+// FontBook: DejaVu Sans regular and bold at the sizes a figure needs, Nanum
+// Gothic behind it for Hangul. Glyphs are baked on demand and drawn on whole
+// pixels, so that text is the same whatever was drawn before.
 #pragma once
 #include <imgui.h>
 
@@ -19,10 +20,12 @@ class FontBook {
   FontBook(const FontBook&) = delete;
   FontBook& operator=(const FontBook&) = delete;
 
-  // Makes sure that size and the characters of the text are baked; may move everything baked before.
+  // Makes sure that size and the characters of the text are baked; may move
+  // everything baked before.
   void require(float size_px, bool bold);
   void require(std::string_view utf8);
-  // Bakes what require() asked for. True where the atlas changed and its texture must be loaded again.
+  // Bakes what require() asked for. True where the atlas changed and its
+  // texture must be loaded again.
   bool bake();
 
   const ImFont& font(float size_px, bool bold) const;
@@ -43,7 +46,8 @@ class FontBook {
   bool stale_ = true;
 };
 
-// Calls f(code point) for each character; malformed UTF-8 gives U+FFFD, code points above U+FFFF too.
+// Calls f(code point) for each character; malformed UTF-8 gives U+FFFD, code
+// points above U+FFFF too.
 void for_each_character(std::string_view utf8, const std::function<void(ImWchar)>& f);
 
 // Height of a capital letter of DejaVu Sans, in em.

@@ -7,7 +7,8 @@
 
 namespace waverig::render {
 
-// OSMesa wants a buffer of its own; everything here is drawn into framebuffer objects, so it stays small.
+// OSMesa wants a buffer of its own; everything here is drawn into framebuffer
+// objects, so it stays small.
 struct GlContext::Handle {
   OSMesaContext context = nullptr;
   std::array<unsigned char, 4 * 4 * 4> pixels{};

@@ -1,7 +1,9 @@
-// GlContext: one off-screen OpenGL 3.3 core context in software (OSMesa, llvmpipe).
+// GlContext: one off-screen OpenGL 3.3 core context in software (OSMesa,
+// llvmpipe).
 //
-// The only place that knows how a context is made: a later Mesa without OSMesa changes this one file
-// (EGL surfaceless gave the same pixels). A context belongs to the thread that made it; never fork after one.
+// The only place that knows how a context is made: a later Mesa without OSMesa
+// changes this one file (EGL surfaceless gave the same pixels). A context
+// belongs to the thread that made it; never fork after one.
 #pragma once
 #ifndef GL_GLEXT_PROTOTYPES
 #define GL_GLEXT_PROTOTYPES
@@ -16,7 +18,8 @@ namespace waverig::render {
 
 class GlContext {
  public:
-  GlContext();  // and makes it current; throws std::runtime_error where Mesa refuses
+  GlContext();  // and makes it current; throws std::runtime_error where Mesa
+                // refuses
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;

@@ -35,7 +35,8 @@ void set_limits(const Axis& axis, const Extent& data, bool padded, Mapping& out)
   }
   low = std::clamp(low, -kLargest, kLargest);
   high = std::clamp(high, -kLargest, kLargest);
-  const auto part = [](double lo, double hi) {  // equal limits get a sensible width
+  const auto part = [](double lo,
+                       double hi) {  // equal limits get a sensible width
     if (hi - lo > 1e-12 * std::max(std::abs(lo), std::abs(hi))) return 0.0;
     return lo == 0 ? 0.5 : 0.05 * std::abs(lo);
   };
@@ -146,7 +147,8 @@ class Planner {
     plan_.title_lines = wrapped(figure_.title, width, 3, fonts_, kTitleText * plan_.text_pt, true);
     plan_.subtitle_lines = wrapped(figure_.subtitle, width, 3, fonts_, kSubtitleText * plan_.text_pt);
     for (PanelPlan& p : plan_.panels) p.margins = {30 * plan_.pt, 4 * plan_.pt, 12 * plan_.pt, 26 * plan_.pt};
-    // Margins depend on tick labels, those on the room the margins leave: three rounds settle it.
+    // Margins depend on tick labels, those on the room the margins leave: three
+    // rounds settle it.
     for (int round = 0; round < 3; ++round) {
       arrange();
       for (PanelPlan& p : plan_.panels) measure(p);
@@ -181,7 +183,8 @@ class Planner {
     }
     for (PanelPlan& p : plan_.panels) {
       for (const Mark& mark : p.panel.marks) {
-        if (const auto* heat = std::get_if<HeatMap>(&mark); heat != nullptr && p.heat == nullptr)
+        if (const auto* heat = std::get_if<HeatMap>(&mark);
+            heat != nullptr && p.heat == nullptr && heat->color_bar)
           p.heat = heat;
       }
       if (!figure_.share_x) continue;
@@ -226,7 +229,8 @@ class Planner {
                : 1.0F;
   }
 
-  // Rows and columns: margins are common to a row or column, so that axes line up; plots share what is left.
+  // Rows and columns: margins are common to a row or column, so that axes line
+  // up; plots share what is left.
   void arrange() {
     const int columns = std::max(1, figure_.columns);
     const auto n = [](int i) { return static_cast<std::size_t>(i); };
@@ -274,6 +278,8 @@ class Planner {
     }
     for (PanelPlan& p : plan_.panels) {
       const std::size_t last = n(p.column + p.panel.column_span - 1);
+      p.title_bottom = y0[n(p.row)] - top[n(p.row)] +
+                       (p.panel.title.empty() ? 0 : line_height(kPanelTitleText * plan_.text_pt));
       p.plot = {std::round(x0[n(p.column)]), std::round(y0[n(p.row)]), std::round(x0[last] + width),
                 std::round(y1[n(p.row)])};
       p.label_left = x0[n(p.column)] - left[n(p.column)];
@@ -285,7 +291,8 @@ class Planner {
     }
   }
 
-  // Widens the shorter axis about its middle until a unit is equally long on both.
+  // Widens the shorter axis about its middle until a unit is equally long on
+  // both.
   static void equalise(PanelPlan& p) {
     const double ux = (p.x.high - p.x.low) / static_cast<double>(p.plot.width()),
                  uy = (p.y.high - p.y.low) / static_cast<double>(p.plot.height());
@@ -303,8 +310,7 @@ class Planner {
     if (!p.panel.title.empty()) m.top += line_height(kPanelTitleText * tpt) + 2 * pt;
     p.legend.entries = legend_entries(p.panel, p.plot.width(), fonts_, tpt);
     if (p.legend.above) {
-      p.legend.columns = legend_columns(p.legend.entries, p.plot.width(), fonts_, tpt);
-      m.top += legend_height_px(p.legend.entries.size(), p.legend.columns, tpt) + 3 * pt;
+      m.top += legend_height_px(lines_above(p), tpt) + 3 * pt;
     }
     if (p.panel.polar) {
       p.y_ticks = linear_ticks(p.y.low, p.y.high, 4);
@@ -354,6 +360,11 @@ class Planner {
     }
   }
 
+  int lines_above(const PanelPlan& p) const {
+    const std::vector<LegendSpot> spots = flowed(p.legend.entries, p.plot.width(), fonts_, plan_.text_pt);
+    return spots.empty() ? 0 : spots.back().line + 1;
+  }
+
   void place_legends() {
     for (PanelPlan& p : plan_.panels) {
       if (p.legend.entries.empty()) continue;
@@ -375,7 +386,7 @@ class Planner {
     if (p.legend.entries.empty()) return;
     // A strip above another panel of the row may have moved this one.
     if (!p.legend.above && inside(p)) return;
-    const float height = legend_height_px(p.legend.entries.size(), p.legend.columns, plan_.text_pt);
+    const float height = legend_height_px(lines_above(p), plan_.text_pt);
     const float bottom = p.plot.top - 3 * plan_.pt - (p.panel.polar ? 14 * plan_.text_pt : 0);
     if (p.legend.above) p.legend.box = {p.plot.left, bottom - height, p.plot.right, bottom};
   }
@@ -411,6 +422,16 @@ std::string axis_text(const Axis& axis, const Ticks& ticks) {
   if (!axis.unit.empty()) inside += (inside.empty() ? "" : " ") + axis.unit;
   if (inside.empty()) return axis.label;
   return (axis.label.empty() ? "" : axis.label + " ") + "(" + inside + ")";
+}
+
+std::string axis_text_fitted(const Axis& axis, const Ticks& ticks, float most_px, const FontBook& fonts,
+                             float size_px) {
+  const std::string whole = axis_text(axis, ticks);
+  if (fonts.width_px(whole, size_px) <= most_px) return whole;
+  const std::string unit = axis_text({.unit = axis.unit}, ticks);
+  const float left_px = most_px - fonts.width_px(" " + unit, size_px);
+  if (axis.label.empty() || left_px < 3 * size_px) return fitted(whole, most_px, fonts, size_px);
+  return fitted(axis.label, left_px, fonts, size_px) + " " + unit;
 }
 
 std::string fitted(const std::string& text, float most_px, const FontBook& fonts, float size_px, bool bold) {

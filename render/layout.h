@@ -1,4 +1,5 @@
-// Where everything of a figure goes: limits, ticks, margins, legends. Nothing is drawn here.
+// Where everything of a figure goes: limits, ticks, margins, legends. Nothing
+// is drawn here.
 #pragma once
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ struct PanelPlan {
   int row = 0, column = 0;
   Margins margins;
   Rect plot;
-  float label_left = 0;  // where the y labels of its column begin
+  float title_bottom = 0;  // titles of a row stand on one line
+  float label_left = 0;    // where the y labels of its column begin
   LegendPlan legend;
   const HeatMap* heat = nullptr;  // into panel.marks: gets a colour bar
 };
@@ -45,10 +47,14 @@ void pixel_size(const Figure& figure, int& width_px, int& height_px);
 
 // "Heave (m)", "Torque (×10³ N m)", "Time (2005-07-01 UTC)"
 std::string axis_text(const Axis& axis, const Ticks& ticks);
+// The same where there is little room: the label is shortened, its unit stays.
+std::string axis_text_fitted(const Axis& axis, const Ticks& ticks, float most_px, const FontBook& fonts,
+                             float size_px);
 // The text, or as much of it as fits before an ellipsis.
 std::string fitted(const std::string& text, float most_px, const FontBook& fonts, float size_px,
                    bool bold = false);
-// Broken at spaces (and at '\n') into at most `most_lines`, the last one fitted.
+// Broken at spaces (and at '\n') into at most `most_lines`, the last one
+// fitted.
 std::vector<std::string> wrapped(const std::string& text, float most_px, int most_lines,
                                  const FontBook& fonts, float size_px, bool bold = false);
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "render/layout.h"
+#include "render/marks.h"
 #include "render/occupancy.h"
 
 namespace waverig::render {
@@ -40,10 +41,12 @@ std::vector<LegendEntry> legend_entries(const Panel& panel, float most_px, const
   std::vector<LegendEntry> entries;
   if (panel.legend == Legend::kNone) return entries;
   for (std::size_t i = 0; i < panel.marks.size(); ++i) {
-    if (name_of(panel.marks[i]).empty()) continue;
-    const std::string name =
-        fitted(name_of(panel.marks[i]), most_px - (kSwatch + kSwatchGap + 2 * kPadding) * text_pt, fonts,
-               kText * text_pt);
+    const Mark& mark = panel.marks[i];
+    if (name_of(mark).empty()) continue;
+    const bool line_or_shade = std::holds_alternative<Rule>(mark) || std::holds_alternative<Span>(mark);
+    if (!line_or_shade && !extents_of(mark, panel.x.scale, panel.y.scale).has_data) continue;
+    const std::string name = fitted(name_of(mark), most_px - (kSwatch + kSwatchGap + 2 * kPadding) * text_pt,
+                                    fonts, kText * text_pt);
     const auto same =
         std::find_if(entries.begin(), entries.end(), [&](const LegendEntry& e) { return e.name == name; });
     if (same != entries.end())
@@ -54,17 +57,20 @@ std::vector<LegendEntry> legend_entries(const Panel& panel, float most_px, const
   return entries;
 }
 
-int legend_columns(const std::vector<LegendEntry>& entries, float width_px, const FontBook& fonts,
-                   float text_pt) {
-  int columns = std::max(1, static_cast<int>(entries.size()));
-  while (columns > 1 && total_width(entries, columns, fonts, text_pt) > width_px) --columns;
-  return columns;
+std::vector<LegendSpot> flowed(const std::vector<LegendEntry>& entries, float width_px, const FontBook& fonts,
+                               float text_pt) {
+  std::vector<LegendSpot> spots;
+  LegendSpot next;
+  for (const LegendEntry& entry : entries) {
+    const float width = entry_px(entry, fonts, text_pt);
+    if (next.x_px > 0 && next.x_px + width > width_px) next = {0, next.line + 1};
+    spots.push_back(next);
+    next.x_px += width + kColumnGap * text_pt;
+  }
+  return spots;
 }
 
-float legend_height_px(std::size_t entries, int columns, float text_pt) {
-  const auto rows = (entries + static_cast<std::size_t>(columns) - 1) / static_cast<std::size_t>(columns);
-  return static_cast<float>(rows) * kPitch * text_pt;
-}
+float legend_height_px(int lines, float text_pt) { return static_cast<float>(lines) * kPitch * text_pt; }
 
 std::optional<FreePlace> free_place(const PanelView& view, const std::vector<LegendEntry>& entries,
                                     const std::vector<Color>& colors) {
@@ -81,7 +87,8 @@ std::optional<FreePlace> free_place(const PanelView& view, const std::vector<Leg
   for (const int columns : {1, static_cast<int>(entries.size()), 2}) {
     if (columns > static_cast<int>(entries.size())) continue;
     const float width = total_width(entries, columns, view.fonts, view.text_pt) + 2 * kPadding * view.text_pt;
-    const float height = legend_height_px(entries.size(), columns, view.text_pt) + kPadding * view.text_pt;
+    const int lines = (static_cast<int>(entries.size()) + columns - 1) / columns;
+    const float height = legend_height_px(lines, view.text_pt) + kPadding * view.text_pt;
     if (width > room.width() || height > room.height()) continue;
     // Corners first, then along the edges, then anywhere.
     constexpr std::array<std::array<float, 2>, 8> kFirst = {
@@ -114,11 +121,14 @@ void draw_legend(const LegendPlan& legend, const std::vector<Color>& colors, con
   if (!legend.above) view.painter.fill_rect(legend.box, with_alpha(view.colors().panel, 0.85F));
   const float pad = legend.above ? 0 : kPadding * pt;
   const std::vector<float> widths = column_widths(legend.entries, legend.columns, view.fonts, pt);
+  const std::vector<LegendSpot> line_by_line =
+      legend.above ? flowed(legend.entries, legend.box.width(), view.fonts, pt) : std::vector<LegendSpot>{};
   for (std::size_t i = 0; i < legend.entries.size(); ++i) {
-    const std::size_t column = i % widths.size(), row = i / widths.size();
-    float x = legend.box.left + pad;
-    for (std::size_t c = 0; c < column; ++c) x += widths[c] + kColumnGap * pt;
-    const float middle = legend.box.top + 0.5F * pad + (static_cast<float>(row) + 0.5F) * kPitch * pt;
+    LegendSpot spot{pad, static_cast<int>(i / widths.size())};
+    for (std::size_t c = 0; c < i % widths.size(); ++c) spot.x_px += widths[c] + kColumnGap * pt;
+    if (legend.above) spot = line_by_line[i];
+    const float x = legend.box.left + spot.x_px;
+    const float middle = legend.box.top + 0.5F * pad + (static_cast<float>(spot.line) + 0.5F) * kPitch * pt;
     const float half = 0.36F * kPitch * pt;
     for (const std::size_t mark : legend.entries[i].marks)
       draw_swatch(view.panel.marks[mark], colors[mark], view,

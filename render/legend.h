@@ -1,5 +1,5 @@
-// Legends that avoid the data: the panel is drawn coarsely onto a grid first, and the legend takes a free
-// place.
+// Legends that avoid the data: the panel is drawn coarsely onto a grid first,
+// and the legend takes a free place.
 #pragma once
 #include <optional>
 #include <string>
@@ -17,19 +17,26 @@ struct LegendEntry {
 struct LegendPlan {
   std::vector<LegendEntry> entries;
   Rect box;            // in pixels
-  int columns = 1;     // entries side by side
-  bool above = false;  // over the panel instead of inside
+  int columns = 1;     // entries side by side, inside
+  bool above = false;  // over the panel instead of inside: line by line, as many
+                       // entries as fit
 };
 
+// Of the marks that show something.
 std::vector<LegendEntry> legend_entries(const Panel& panel, float most_px, const FontBook& fonts,
                                         float text_pt);
-// How many columns fit side by side, and what height they take.
-int legend_columns(const std::vector<LegendEntry>& entries, float width_px, const FontBook& fonts,
-                   float text_pt);
-float legend_height_px(std::size_t entries, int columns, float text_pt);
+// Where the entries of a legend above its panel stand: x from its left, line
+// from the top.
+struct LegendSpot {
+  float x_px = 0;
+  int line = 0;
+};
+std::vector<LegendSpot> flowed(const std::vector<LegendEntry>& entries, float width_px, const FontBook& fonts,
+                               float text_pt);
+float legend_height_px(int lines, float text_pt);
 
-// A box inside the plot that hides nothing; none where there is no room. `draw_marks` paints the panel's
-// data.
+// A box inside the plot that hides nothing; none where there is no room.
+// `draw_marks` paints the panel's data.
 struct FreePlace {
   Rect box;
   int columns = 1;

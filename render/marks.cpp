@@ -43,7 +43,8 @@ struct ExtentsOf {
     for (std::size_t i = 0; i < std::min(m.at.size(), m.value.size()); ++i) {
       if (!std::isfinite(m.value[i])) continue;
       for (const double edge : {m.at[i] - m.width / 2, m.at[i] + m.width / 2}) {
-        for (const double length : {base_of(m, i), m.value[i]}) m.horizontal ? add(length, edge) : add(edge, length);
+        for (const double length : {base_of(m, i), m.value[i]})
+          m.horizontal ? add(length, edge) : add(edge, length);
       }
     }
     out.pad_x = true;
@@ -228,7 +229,7 @@ struct Draw {
                                  : m.decimals >= 0  ? number_text(m.values[i], m.decimals)
                                                     : "";
         if (text.empty()) continue;
-        cell_text(text, {a.x, a.y, b.x, b.y}, luminance(fill) < 0.3F ? rgb(0xFFFFFF) : rgb(0x1A1A1A));
+        cell_text(text, {a.x, a.y, b.x, b.y}, luminance(fill) < 0.18F ? rgb(0xFFFFFF) : rgb(0x1A1A1A));
       }
     }
   }

@@ -21,10 +21,12 @@ struct Extent {
   }
 };
 
-// What a mark needs of both axes. On a logarithmic axis only positive values count.
+// What a mark needs of both axes. On a logarithmic axis only positive values
+// count.
 struct MarkExtents {
   Extent x, y;
-  bool pad_x = false, pad_y = true;  // free space at the ends: points want it along x, heat maps nowhere
+  bool pad_x = false, pad_y = true;  // free space at the ends: points want it
+                                     // along x, heat maps nowhere
   bool has_data = false;
 };
 MarkExtents extents_of(const Mark& mark, Scale x_scale, Scale y_scale);

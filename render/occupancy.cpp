@@ -23,7 +23,8 @@ void Occupancy::mark(Vec2 p) {
 void Occupancy::stroke(std::span<const Vec2> points, Color, float) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Vec2 a = points[i], b = points[i + 1];
-    // Far outside the area nothing is marked: the walk is cut to where it may be.
+    // Far outside the area nothing is marked: the walk is cut to where it may
+    // be.
     if ((a.x < area_.left && b.x < area_.left) || (a.x > area_.right && b.x > area_.right) ||
         (a.y < area_.top && b.y < area_.top) || (a.y > area_.bottom && b.y > area_.bottom))
       continue;

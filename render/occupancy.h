@@ -18,7 +18,8 @@ class Occupancy : public Painter {
   void push_clip(const Rect&) override {}
   void pop_clip() override {}
 
-  // Share of the rectangle's cells that are taken; what lies outside the area counts as taken.
+  // Share of the rectangle's cells that are taken; what lies outside the area
+  // counts as taken.
   double taken(const Rect& rect) const;
 
  private:

@@ -9,7 +9,8 @@
 namespace waverig::render {
 namespace {
 
-constexpr float kTickLength = 3, kTickGap = 2.5F, kColorBarGap = 7, kColorBarWidth = 9;  // points
+constexpr float kTickLength = 3, kTickGap = 2.5F, kColorBarGap = 7,
+                kColorBarWidth = 9;  // points
 
 void line(const PanelView& v, Vec2 a, Vec2 b, Color color, float width_pt) {
   v.painter.stroke(std::array{a, b}, color, width_pt * v.pt);
@@ -69,13 +70,14 @@ void draw_axes(const PanelPlan& p, const PanelView& v) {
       rows = std::max(rows, 1 + std::count(t.label.begin(), t.label.end(), '\n'));
     const float y =
         bottom + length + kTickGap * v.pt + 1.3F * tick_px * static_cast<float>(rows) + 1.5F * v.pt;
-    v.painter.text({v.centre().x, y}, fitted(text, p.plot.width() * 1.1F, v.fonts, label_px),
+    v.painter.text({v.centre().x, y},
+                   axis_text_fitted(p.panel.x, p.x_ticks, p.plot.width() * 1.1F, v.fonts, label_px),
                    {.size_px = label_px, .color = ink, .h = HAlign::kCenter, .v = VAlign::kTop});
   }
   if (const std::string text = axis_text(p.panel.y, p.y_ticks); !text.empty()) {
     const float x = p.label_left + 0.2F * label_px;
     v.painter.text(
-        {x, v.centre().y}, fitted(text, p.plot.height() * 1.08F, v.fonts, label_px),
+        {x, v.centre().y}, axis_text_fitted(p.panel.y, p.y_ticks, p.plot.height() * 1.08F, v.fonts, label_px),
         {.size_px = label_px, .color = ink, .h = HAlign::kCenter, .v = VAlign::kTop, .upwards = true});
   }
 }
@@ -143,9 +145,9 @@ void draw_color_bar(const PanelPlan& p, const PanelView& v) {
                    {.size_px = tick_px, .color = v.colors().ink, .v = VAlign::kMiddle});
     widest = std::max(widest, v.fonts.width_px(t.label, tick_px));
   }
-  const std::string text = axis_text({.label = p.heat->label, .unit = p.heat->unit}, ticks);
   v.painter.text({right + (kTickLength + kTickGap + 3) * v.pt + widest, v.centre().y},
-                 fitted(text, 1.05F * height, v.fonts, label_px),
+                 axis_text_fitted({.label = p.heat->label, .unit = p.heat->unit}, ticks, 1.05F * height,
+                                  v.fonts, label_px),
                  {.size_px = label_px,
                   .color = v.colors().ink,
                   .h = HAlign::kCenter,
@@ -162,6 +164,10 @@ void draw_panel(const PanelPlan& p, const PanelView& v) {
   for (std::size_t i = 0; i < p.panel.marks.size(); ++i) draw_mark(p.panel.marks[i], p.colors[i], v);
   if (!p.panel.polar) v.painter.pop_clip();
   if (!p.has_data) {
+    const float half = 0.5F * v.fonts.width_px("no data", kLabelText * v.text_pt) + 4 * v.pt;
+    v.painter.fill_rect(
+        {v.centre().x - half, v.centre().y - 8 * v.pt, v.centre().x + half, v.centre().y + 8 * v.pt},
+        v.colors().panel);
     v.painter.text(v.centre(), "no data",
                    {.size_px = kLabelText * v.text_pt,
                     .color = v.colors().faint_ink,
@@ -176,8 +182,7 @@ void draw_panel(const PanelPlan& p, const PanelView& v) {
   draw_legend(p.legend, p.colors, v);
   if (!p.panel.title.empty()) {
     const float size = kPanelTitleText * v.text_pt;
-    const float above = p.legend.above ? p.legend.box.top : p.plot.top - (p.panel.polar ? 14 * v.text_pt : 0);
-    v.painter.text({p.plot.left, above - 0.45F * size},
+    v.painter.text({p.plot.left, p.title_bottom - 0.35F * size},
                    fitted(p.panel.title, p.plot.width() + p.margins.right, v.fonts, size, true),
                    {.size_px = size, .color = v.colors().ink, .bold = true});
   }

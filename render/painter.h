@@ -1,5 +1,6 @@
-// Painter: the few strokes every figure is made of. Pixels, origin at the top left, y down.
-// Two stand behind it: an ImDrawList for the screen of pixels, and an SVG file for the page.
+// Painter: the few strokes every figure is made of. Pixels, origin at the top
+// left, y down. Two stand behind it: an ImDrawList for the screen of pixels,
+// and an SVG file for the page.
 #pragma once
 #include <span>
 #include <string_view>

@@ -1,4 +1,5 @@
-// PanelView: one panel being drawn: where its axes lie on the page and how data become pixels.
+// PanelView: one panel being drawn: where its axes lie on the page and how data
+// become pixels.
 #pragma once
 #include <cmath>
 #include <numbers>

@@ -28,7 +28,8 @@ void put_chunk(Bytes& out, std::string_view type, const std::uint8_t* data, std:
   put_u32(out, libdeflate_crc32(0, out.data() + begin, out.size() - begin));
 }
 
-// RGB rows with filter "Up" (section 9.2): flat areas and straight edges become zeros.
+// RGB rows with filter "Up" (section 9.2): flat areas and straight edges become
+// zeros.
 void filter_rows(const Image& image, Bytes& rows) {
   const auto width = static_cast<std::size_t>(image.width_px),
              height = static_cast<std::size_t>(image.height_px);
@@ -45,7 +46,8 @@ void filter_rows(const Image& image, Bytes& rows) {
   }
 }
 
-constexpr int kLevel = 1;  // higher levels save a few percent of a figure and cost several times the time
+constexpr int kLevel = 1;  // higher levels save a few percent of a figure and
+                           // cost several times the time
 
 }  // namespace
 

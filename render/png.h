@@ -14,11 +14,13 @@ namespace waverig::render {
 
 struct PngSettings {
   double dots_per_inch = 200;
-  // Keyword and UTF-8 text, e.g. {"Software", "waverig 0.1.0"}; keywords are 1 to 79 Latin-1 characters.
+  // Keyword and UTF-8 text, e.g. {"Software", "waverig 0.1.0"}; keywords are 1
+  // to 79 Latin-1 characters.
   std::vector<std::pair<std::string, std::string>> text;
 };
 
-// Writes RGB, since a finished figure is opaque. Keeps its buffers and compressor from picture to picture.
+// Writes RGB, since a finished figure is opaque. Keeps its buffers and
+// compressor from picture to picture.
 class PngEncoder {
  public:
   PngEncoder();

@@ -1,4 +1,5 @@
-// What Lee, Lee, Heo 2014 published: Table 2 and the effect of the accelerometer calibration. One place for all figures.
+// What Lee, Lee, Heo 2014 published: Table 2 and the effect of the
+// accelerometer calibration. One place for all figures.
 #pragma once
 #include <array>
 
@@ -18,7 +19,8 @@ inline constexpr std::array<PublishedCell, 6> kPublishedTable2 = {{
     {12, 1.00, 1.0080, 0.80, 0.1189},
 }};
 
-// 12 s, 100 cm: before and after the accelerometer's calibration (figures 6 and 7).
+// 12 s, 100 cm: before and after the accelerometer's calibration (figures 6 and
+// 7).
 inline constexpr PublishedCell kPublishedUncalibrated = {12, 1.00, 1.014275, 1.43, 0.096752};
 inline constexpr PublishedCell kPublishedCalibrated = {12, 1.00, 1.008163, 0.82, 0.092120};
 

@@ -53,9 +53,11 @@ std::string xml_escaped(std::string_view text) {
 SvgPainter::SvgPainter(int width_px, int height_px, double width_mm, Color background,
                        const std::string& description) {
   out_ = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2f}mm\" height=\"{:.2f}mm\" viewBox=\"0 0 {} "
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" "
+      "width=\"{:.2f}mm\" height=\"{:.2f}mm\" viewBox=\"0 0 {} "
       "{}\" "
-      "font-family=\"DejaVu Sans, Verdana, sans-serif\" stroke-linejoin=\"round\">\n<desc>{}</desc>\n",
+      "font-family=\"DejaVu Sans, Verdana, sans-serif\" "
+      "stroke-linejoin=\"round\">\n<desc>{}</desc>\n",
       width_mm, width_mm * height_px / width_px, width_px, height_px, xml_escaped(description));
   fill_rect({0, 0, static_cast<float>(width_px), static_cast<float>(height_px)}, background);
 }
@@ -63,8 +65,9 @@ SvgPainter::SvgPainter(int width_px, int height_px, double width_mm, Color backg
 void SvgPainter::stroke(std::span<const Vec2> points, Color color, float width_px) {
   if (points.empty()) return;
   fmt::format_to(std::back_inserter(out_),
-                 "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2f}\"{} points=\"", hex(color),
-                 width_px, color.a < 1 ? fmt::format(" stroke-opacity=\"{:.3g}\"", color.a) : "");
+                 "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2f}\"{} "
+                 "points=\"",
+                 hex(color), width_px, color.a < 1 ? fmt::format(" stroke-opacity=\"{:.3g}\"", color.a) : "");
   put_points(out_, points);
   out_ += "\"/>\n";
 }
@@ -84,8 +87,9 @@ void SvgPainter::fill_between(std::span<const Vec2> upper, std::span<const Vec2>
 
 void SvgPainter::fill_rect(const Rect& r, Color color) {
   fmt::format_to(std::back_inserter(out_),
-                 "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" {}/>\n", r.left, r.top,
-                 r.width(), r.height(), fill_of(color));
+                 "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" "
+                 "height=\"{:.2f}\" {}/>\n",
+                 r.left, r.top, r.width(), r.height(), fill_of(color));
 }
 
 void SvgPainter::text(Vec2 at, std::string_view utf8, const TextStyle& style) {
@@ -93,7 +97,8 @@ void SvgPainter::text(Vec2 at, std::string_view utf8, const TextStyle& style) {
   const float down = style.v == VAlign::kBaseline ? 0 : style.v == VAlign::kMiddle ? 0.5F * cap : cap;
   const char* anchor = style.h == HAlign::kLeft ? "start" : style.h == HAlign::kCenter ? "middle" : "end";
   fmt::format_to(std::back_inserter(out_),
-                 "<text transform=\"translate({:.2f} {:.2f}){}\" y=\"{:.2f}\" font-size=\"{:.2f}\" "
+                 "<text transform=\"translate({:.2f} {:.2f}){}\" y=\"{:.2f}\" "
+                 "font-size=\"{:.2f}\" "
                  "text-anchor=\"{}\"{} {}>{}</text>\n",
                  at.x, at.y, style.upwards ? " rotate(-90)" : "", down, style.size_px, anchor,
                  style.bold ? " font-weight=\"bold\"" : "", fill_of(style.color), xml_escaped(utf8));
@@ -102,7 +107,8 @@ void SvgPainter::text(Vec2 at, std::string_view utf8, const TextStyle& style) {
 void SvgPainter::push_clip(const Rect& r) {
   ++clips_;
   fmt::format_to(std::back_inserter(out_),
-                 "<clipPath id=\"c{0}\"><rect x=\"{1:.2f}\" y=\"{2:.2f}\" width=\"{3:.2f}\" "
+                 "<clipPath id=\"c{0}\"><rect x=\"{1:.2f}\" y=\"{2:.2f}\" "
+                 "width=\"{3:.2f}\" "
                  "height=\"{4:.2f}\"/></clipPath>\n<g clip-path=\"url(#c{0})\">\n",
                  clips_, r.left, r.top, r.width(), r.height());
 }

@@ -59,8 +59,8 @@ Ticks linear_ticks(double low, double high, int most) {
   const auto count = [&] { return std::floor(high / step + kSlack) - std::ceil(low / step - kSlack) + 1; };
   if (count() > most) step = nice_step(range, most - 1);
 
-  // A long common part goes to the axis label: a power of ten, or an offset where only the last digits
-  // differ.
+  // A long common part goes to the axis label: a power of ten, or an offset
+  // where only the last digits differ.
   double scale = 1, offset = 0;
   if (range < 1e-5 * largest) {
     offset = std::floor(low / (100 * step)) * 100 * step;
@@ -92,7 +92,8 @@ Ticks log_ticks(double low, double high, int most) {
     const double mantissa = value / std::pow(10.0, exponent);
     return (mantissa > 1.5 ? number_text(mantissa, 0) + "\u00B7" : "") + power_of_ten_text(exponent);
   };
-  if (last - first < 1) {  // not two decades' marks: 1, 2, 5, or plain numbers where even that is too coarse
+  if (last - first < 1) {  // not two decades' marks: 1, 2, 5, or plain numbers
+                           // where even that is too coarse
     for (double decade = first - 1; decade <= last + 1; ++decade) {
       for (int m = 1; m <= 9; ++m) {
         const double v = m * std::pow(10.0, decade);

@@ -1,4 +1,5 @@
-// Where an axis carries ticks and what stands there: round numbers, decades, or round times of day.
+// Where an axis carries ticks and what stands there: round numbers, decades, or
+// round times of day.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,19 +14,22 @@ struct Tick {
 struct Ticks {
   std::vector<Tick> major;
   std::vector<double> minor;
-  std::string suffix;  // belongs to the axis label: "×10⁻⁶", "+ 12000000", a date; often empty
+  std::string suffix;  // belongs to the axis label: "×10⁻⁶", "+ 12000000", a
+                       // date; often empty
 };
 
-// At most `most` major ticks (at least 2 where the interval allows it) within [low, high]; low < high, both
-// finite.
+// At most `most` major ticks (at least 2 where the interval allows it) within
+// [low, high]; low < high, both finite.
 Ticks linear_ticks(double low, double high, int most);
 Ticks log_ticks(double low, double high, int most);   // low > 0
 Ticks time_ticks(double low, double high, int most);  // seconds since 1970, UTC
 
-// The largest step of 1, 2 or 5 times a power of ten with which [0, range] holds at most `most` steps.
+// The largest step of 1, 2 or 5 times a power of ten with which [0, range]
+// holds at most `most` steps.
 double nice_step(double range, int most);
 
-// A number for people: decimals as given, thin-minus replaced by U+2212, no negative zero.
+// A number for people: decimals as given, thin-minus replaced by U+2212, no
+// negative zero.
 std::string number_text(double value, int decimals);
 // "10⁻³"
 std::string power_of_ten_text(int exponent);

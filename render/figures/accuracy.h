@@ -5,24 +5,29 @@
 
 namespace waverig::render {
 
-// Table 2 as a chart: what was published beside what each method gives, mean with standard deviation, and the
-// standard deviation of single waves beside the physical limit.
+// Table 2 as a chart: what was published beside what each method gives, mean
+// with standard deviation, and the standard deviation of single waves beside
+// the physical limit.
 Figure table2_figure(const evaluation::CampaignResults& results);
 
-// Period x height, a map a method: error of the mean height; standard deviation with the limit beside.
+// Period x height, a map a method: error of the mean height; standard deviation
+// with the limit beside.
 Figure error_map_figure(const evaluation::CampaignResults& results);
 Figure std_map_figure(const evaluation::CampaignResults& results);
 
-// Gain and phase against period as on a buoy's calibration sheet, with bands of k = 2 standard uncertainties of the mean.
+// Gain and phase against period as on a buoy's calibration sheet, with bands of
+// k = 2 standard uncertainties of the mean.
 Figure frequency_response_figure(const evaluation::CampaignResults& results);
 
 // Single waves, estimated against true.
 Figure single_waves_figure(const evaluation::CampaignResults& results);
 
-// Contributions to the standard uncertainty of the mean height (GUM), a panel a method, each setting's bars together.
+// Contributions to the standard uncertainty of the mean height (GUM), a panel a
+// method, each setting's bars together.
 Figure uncertainty_budget_figure(const evaluation::CampaignResults& results);
 
-// Methods in the order of the results; the palette number of each is its place here, in every figure.
+// Methods in the order of the results; the palette number of each is its place
+// here, in every figure.
 std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
 
 }  // namespace waverig::render

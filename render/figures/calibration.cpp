@@ -15,7 +15,8 @@ using nlohmann::json;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
-// In the order of error_over_sigma: M row by row, the bias, then what else was solved for.
+// In the order of error_over_sigma: M row by row, the bias, then what else was
+// solved for.
 std::vector<std::string> unknown_names(std::size_t n) {
   std::vector<std::string> names;
   for (const char* row : kAxes) {
@@ -29,8 +30,10 @@ std::vector<std::string> unknown_names(std::size_t n) {
 }
 
 Panel residual_panel(const json& positions) {
-  Panel panel{.title = "(a) What the fit leaves over, position by position", .x = {.label = "Axis that points up or down"},
-              .y = {.label = "Reading \u2212 model", .unit = "mm/s\u00B2"}, .legend = Legend::kAbove};
+  Panel panel{.title = "(a) What the fit leaves over, position by position",
+              .x = {.label = "Axis that points up or down"},
+              .y = {.label = "Residual", .unit = "mm/s\u00B2"},
+              .legend = Legend::kAbove};
   std::array<Bars, 3> bars;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     bars[axis].name = fmt::format("f {}", kAxes[axis]);
@@ -50,9 +53,12 @@ Panel residual_panel(const json& positions) {
 }
 
 Panel truth_panel(const json& truth) {
-  Panel panel{.title = "(b) Result less simulated truth, in its own standard uncertainties", .x = {.label = "Parameter: matrix M, bias b, bend q"},
-              .y = {.label = "Error / \u03C3"}, .legend = Legend::kAbove};
-  Points points{.name = "found \u2212 true", .look = {.color = 0, .marker = Marker::kCircle, .marker_pt = 4.5}};
+  Panel panel{.title = "(b) Result less simulated truth, in its own standard uncertainties",
+              .x = {.label = "Parameter: matrix M, bias b, bend q"},
+              .y = {.label = "Error / \u03C3"},
+              .legend = Legend::kAbove};
+  Points points{.name = "found \u2212 true",
+                .look = {.color = 0, .marker = Marker::kCircle, .marker_pt = 4.5}};
   const auto errors = truth.at("error_over_sigma").get<std::vector<double>>();
   panel.x.categories = unknown_names(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -60,7 +66,8 @@ Panel truth_panel(const json& truth) {
     points.y.push_back(errors[i]);
   }
   panel.marks.emplace_back(Span{.from = -2, .to = 2, .vertical = false, .name = "\u00B1 2\u03C3"});
-  panel.marks.emplace_back(Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kSolid}});
+  panel.marks.emplace_back(
+      Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kSolid}});
   panel.marks.emplace_back(std::move(points));
   panel.y.padding = 0.15;
   // The band belongs to the picture even where every error is small.
@@ -79,14 +86,16 @@ std::optional<Figure> calibration_figure(const std::string& text) {
     if (report.contains("simulated_truth")) {
       const json& truth = report.at("simulated_truth");
       figure.panels.push_back(truth_panel(truth));
-      figure.subtitle = fmt::format("\u03C7\u00B2 = {:.1f} of result against truth for {} parameters", truth.at("chi_square").get<double>(),
-                                    truth.at("degrees_of_freedom").get<int>());
+      figure.subtitle =
+          fmt::format("\u03C7\u00B2 = {:.1f} of result against truth for {} parameters",
+                      truth.at("chi_square").get<double>(), truth.at("degrees_of_freedom").get<int>());
     }
     if (figure.panels.empty()) return std::nullopt;
     if (figure.panels.size() == 1) figure.height_mm = 75;
     return figure;
   } catch (const json::exception& error) {
-    throw UserError(fmt::format("calibration report: {}: a sensor calibration in JSON expected", error.what()));
+    throw UserError(
+        fmt::format("calibration report: {}: a sensor calibration in JSON expected", error.what()));
   }
 }
 

@@ -1,4 +1,5 @@
-// The campaign's own calibration: what the six positions leave over, and how far the result is from the simulated truth.
+// The campaign's own calibration: what the six positions leave over, and how
+// far the result is from the simulated truth.
 #pragma once
 #include <optional>
 #include <string>
@@ -7,7 +8,8 @@
 
 namespace waverig::render {
 
-// json: CampaignResults::calibration_json; none where it is empty. Throws UserError where it is not a calibration.
+// json: CampaignResults::calibration_json; none where it is empty. Throws
+// UserError where it is not a calibration.
 std::optional<Figure> calibration_figure(const std::string& json);
 
 }  // namespace waverig::render

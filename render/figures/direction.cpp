@@ -12,16 +12,19 @@
 
 namespace waverig::render {
 
-Panel rose_panel(std::string title, const std::vector<double>& directions_rad, const std::vector<double>& hm0_m) {
+Panel rose_panel(std::string title, const std::vector<double>& directions_rad,
+                 const std::vector<double>& hm0_m) {
   constexpr std::size_t kSectors = 16, kClasses = 4;
   constexpr double kSector = 2 * std::numbers::pi / kSectors;
   Panel panel{.title = std::move(title), .y = {.unit = "%", .low = 0}, .polar = true, .compass = true};
   double highest = 0;
-  std::vector<std::array<std::size_t, 2>> hits;   // sector, sample
+  std::vector<std::array<std::size_t, 2>> hits;  // sector, sample
   for (std::size_t i = 0; i < std::min(directions_rad.size(), hm0_m.size()); ++i) {
     if (!std::isfinite(directions_rad[i]) || !std::isfinite(hm0_m[i])) continue;
     const double turns = directions_rad[i] / kSector;
-    hits.push_back({static_cast<std::size_t>(std::lround(turns - kSectors * std::floor(turns / kSectors))) % kSectors, i});
+    hits.push_back(
+        {static_cast<std::size_t>(std::lround(turns - kSectors * std::floor(turns / kSectors))) % kSectors,
+         i});
     highest = std::max(highest, hm0_m[i]);
   }
   const double step = highest > 0 ? nice_step(highest, kClasses) : 1;
@@ -32,7 +35,8 @@ Panel rose_panel(std::string title, const std::vector<double>& directions_rad, c
     Bars bars{.name = fmt::format("Hm0 {:g} to {:g} m", from, to), .width = 0.9 * kSector};
     std::array<double, kSectors> share{};
     for (const auto& [sector, i] : hits) {
-      if (hm0_m[i] >= from && (hm0_m[i] < to || c + 1 == kClasses)) share[sector] += 100.0 / static_cast<double>(hits.size());
+      if (hm0_m[i] >= from && (hm0_m[i] < to || c + 1 == kClasses))
+        share[sector] += 100.0 / static_cast<double>(hits.size());
     }
     for (std::size_t s = 0; s < kSectors; ++s) {
       bars.at.push_back(static_cast<double>(s) * kSector);
@@ -51,16 +55,20 @@ std::optional<Figure> direction_figure(const evaluation::CampaignResults& result
   };
   std::map<std::string, Seas> by_method;
   for (const evaluation::RunResult& run : results.runs) {
-    for (const estimator::SeaState& sea : run.seas) {
+    for (const evaluation::JudgedSea& judged : run.seas) {
+      const estimator::SeaState& sea = judged.sea;
       if (!std::isfinite(sea.mean_direction_rad)) continue;
       by_method[run.method].directions_rad.push_back(sea.mean_direction_rad);
       by_method[run.method].hm0_m.push_back(sea.hm0_m);
     }
   }
   if (by_method.empty()) return std::nullopt;
-  Figure figure{.title = "Directions the waves came from", .subtitle = "share of sea states by mean direction, true north up", .height_mm = 110};
+  Figure figure{.title = "Directions the waves came from",
+                .subtitle = "share of sea states by mean direction, true north up",
+                .height_mm = 110};
   figure.columns = static_cast<int>(std::min<std::size_t>(by_method.size(), 3));
-  for (const auto& [method, seas] : by_method) figure.panels.push_back(rose_panel(method, seas.directions_rad, seas.hm0_m));
+  for (const auto& [method, seas] : by_method)
+    figure.panels.push_back(rose_panel(method, seas.directions_rad, seas.hm0_m));
   return figure;
 }
 

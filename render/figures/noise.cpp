@@ -9,6 +9,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "estimator/calibration/allan.h"
+#include "render/figures/methods.h"
 
 namespace waverig::render {
 namespace {
@@ -23,36 +24,43 @@ double median_interval_s(const std::vector<estimator::ImuSample>& imu) {
   return static_cast<double>(steps[steps.size() / 2]) * kMicrosecond;
 }
 
-// Pools the records of one axis: variances weighted with their degrees of freedom.
+// Pools the records of one axis: variances weighted with their degrees of
+// freedom.
 std::vector<estimator::AllanPoint> pooled(const std::vector<RestRecord>& records, std::size_t axis) {
   std::vector<estimator::AllanPoint> sum;
   for (const RestRecord& record : records) {
-    const std::vector<estimator::AllanPoint> points = estimator::allan_deviation(record.axes[axis], record.interval_s);
+    const std::vector<estimator::AllanPoint> points =
+        estimator::allan_deviation(record.axes[axis], record.interval_s);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i >= sum.size()) sum.push_back({points[i].tau_s, 0, 0});
       sum[i].deviation += points[i].degrees * points[i].deviation * points[i].deviation;
       sum[i].degrees += points[i].degrees;
     }
   }
-  for (estimator::AllanPoint& p : sum) p.deviation = p.degrees > 0 ? std::sqrt(p.deviation / p.degrees) : kAuto;
+  for (estimator::AllanPoint& p : sum)
+    p.deviation = p.degrees > 0 ? std::sqrt(p.deviation / p.degrees) : kAuto;
   return sum;
 }
 
 // The curve of the four terms together.
 double deviation_of(const estimator::AllanTerms& t, double tau_s) {
-  return std::sqrt(3 * t.quantisation * t.quantisation / (tau_s * tau_s) + t.random_walk * t.random_walk / tau_s +
+  return std::sqrt(3 * t.quantisation * t.quantisation / (tau_s * tau_s) +
+                   t.random_walk * t.random_walk / tau_s +
                    2 * std::numbers::ln2 / std::numbers::pi * t.bias_instability * t.bias_instability +
                    t.rate_random_walk * t.rate_random_walk * tau_s / 3);
 }
 
 struct Quantity {
-  const char *title, *label, *unit, *walk_unit, *bias_unit;
-  double scale, walk_scale, bias_scale;   // from SI to what is shown
+  const char *title, *unit, *noise_unit, *bias_unit;
+  double scale,
+      noise_scale;  // from SI to the axis and to the terms in the legend
 };
 
 Panel allan_panel(const std::vector<RestRecord>& records, const Quantity& q) {
-  Panel panel{.title = q.title, .x = {.label = "Averaging time \u03C4", .unit = "s", .scale = Scale::kLog},
-              .y = {.label = q.label, .unit = q.unit, .scale = Scale::kLog}, .legend = Legend::kAbove};
+  Panel panel{.title = q.title,
+              .x = {.label = "Averaging time \u03C4", .unit = "s", .scale = Scale::kLog},
+              .y = {.label = "Allan deviation", .unit = q.unit, .scale = Scale::kLog},
+              .legend = Legend::kAbove};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int color = static_cast<int>(axis);
     const std::vector<estimator::AllanPoint> points = pooled(records, axis);
@@ -62,7 +70,8 @@ Panel allan_panel(const std::vector<RestRecord>& records, const Quantity& q) {
     Line fit{.look = {.color = color, .width_pt = 0.9}};
     for (const estimator::AllanPoint& p : points) {
       if (!(p.deviation > 0)) continue;
-      const double shown = q.scale * p.deviation, u = 1 / std::sqrt(2 * std::max(1.0, p.degrees));   // one sigma, relative
+      const double shown = q.scale * p.deviation,
+                   u = 1 / std::sqrt(2 * std::max(1.0, p.degrees));  // one sigma, relative
       measured.x.push_back(p.tau_s);
       measured.y.push_back(shown);
       band.x.push_back(p.tau_s);
@@ -71,14 +80,35 @@ Panel allan_panel(const std::vector<RestRecord>& records, const Quantity& q) {
       fit.x.push_back(p.tau_s);
       fit.y.push_back(q.scale * deviation_of(terms, p.tau_s));
     }
-    std::string name = fmt::format("{}: N = {:.3g} {}", kAxisNames[axis], q.walk_scale * terms.random_walk, q.walk_unit);
-    if (terms.bias_instability > 0) name += fmt::format(", B = {:.2g} {}", q.bias_scale * terms.bias_instability, q.bias_unit);
+    std::string name = fmt::format("{}: {:.3g} {}", kAxisNames[axis],
+                                   q.noise_scale * terms.one_sided_density(), q.noise_unit);
+    if (terms.bias_instability > 0)
+      name += fmt::format(", B {:.2g} {}", q.noise_scale * terms.bias_instability, q.bias_unit);
     measured.name = fit.name = name;
     panel.marks.emplace_back(std::move(band));
     panel.marks.emplace_back(std::move(fit));
     panel.marks.emplace_back(std::move(measured));
   }
   return panel;
+}
+
+// Mean power in bands of a twelfth of an octave: a floor becomes a line, and
+// single bins of low frequency stay.
+Spectrum banded(const Spectrum& s) {
+  const double ratio = std::pow(2.0, 1.0 / 12);
+  Spectrum out;
+  for (std::size_t i = 0; i < s.frequency_hz.size();) {
+    double power = 0, log_frequency = 0;
+    std::size_t n = 0;
+    for (const double end = s.frequency_hz[i] * ratio;
+         i < s.frequency_hz.size() && (n == 0 || s.frequency_hz[i] < end); ++i, ++n) {
+      power += s.density_rthz[i] * s.density_rthz[i];
+      log_frequency += std::log(s.frequency_hz[i]);
+    }
+    out.frequency_hz.push_back(std::exp(log_frequency / static_cast<double>(n)));
+    out.density_rthz.push_back(std::sqrt(power / static_cast<double>(n)));
+  }
+  return out;
 }
 
 }  // namespace
@@ -96,7 +126,9 @@ RestRecords rest_of(const evaluation::RunRecord& run) {
   const double interval_s = median_interval_s(run.imu);
   RestRecord force{.interval_s = interval_s, .axes = {}}, rate = force;
   for (std::size_t i = 0; i < run.imu.size() && run.imu[i].utime < end_utime; ++i) {
-    if (i > 0 && static_cast<double>(run.imu[i].utime - run.imu[i - 1].utime) * kMicrosecond > 1.5 * interval_s) break;
+    if (i > 0 &&
+        static_cast<double>(run.imu[i].utime - run.imu[i - 1].utime) * kMicrosecond > 1.5 * interval_s)
+      break;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       force.axes[axis].push_back(run.imu[i].f_B[static_cast<Eigen::Index>(axis)]);
       rate.axes[axis].push_back(run.imu[i].w_NB_B[static_cast<Eigen::Index>(axis)]);
@@ -115,17 +147,22 @@ void append(RestRecords& to, RestRecords&& from) {
 
 Figure allan_figure(const RestRecords& rest) {
   double longest_s = 0;
-  for (const RestRecord& r : rest.specific_force_mps2) longest_s = std::max(longest_s, r.interval_s * static_cast<double>(r.axes[0].size()));
+  for (const RestRecord& r : rest.specific_force_mps2)
+    longest_s = std::max(longest_s, r.interval_s * static_cast<double>(r.axes[0].size()));
   Figure figure{.title = "Allan deviation of the sensors at rest",
-                .subtitle = fmt::format("calibrated samples, {} record{} of up to {:.0f} s; bands: one standard deviation; lines: fitted noise terms (IEEE Std 952)",
-                                        rest.specific_force_mps2.size(), rest.specific_force_mps2.size() == 1 ? "" : "s", longest_s),
+                .subtitle = fmt::format("calibrated samples, {} record{} of {:.0f} s; bands: one standard "
+                                        "deviation; lines: fitted white noise and bias instability B",
+                                        rest.specific_force_mps2.size(),
+                                        rest.specific_force_mps2.size() == 1 ? "" : "s", longest_s),
                 .columns = 2,
                 .height_mm = 100};
   constexpr double kMicroG = kStandardGravity * 1e-6;
-  figure.panels.push_back(allan_panel(rest.specific_force_mps2, {"(a) Accelerometer", "Allan deviation", "m/s\u00B2", "\u00B5g\u00B7\u221As", "\u00B5g", 1,
-                                                                 1 / kMicroG, 1 / kMicroG}));
-  figure.panels.push_back(allan_panel(rest.angular_rate_radps, {"(b) Gyroscope", "Allan deviation", "\u00B0/s", "\u00B0/s\u00B7\u221As", "\u00B0/s", 1 / kDegree,
-                                                                1 / kDegree, 1 / kDegree}));
+  figure.panels.push_back(
+      allan_panel(rest.specific_force_mps2,
+                  {"(a) Accelerometer", "m/s\u00B2", "\u00B5g/\u221AHz", "\u00B5g", 1, 1 / kMicroG}));
+  figure.panels.push_back(allan_panel(
+      rest.angular_rate_radps,
+      {"(b) Gyroscope", "\u00B0/s", "(\u00B0/s)/\u221AHz", "\u00B0/s", 1 / kDegree, 1 / kDegree}));
   return figure;
 }
 
@@ -136,14 +173,16 @@ Spectrum welch(std::span<const double> values, double interval_s, std::size_t bl
   std::vector<double> window(block), windowed(block), power(block / 2 + 1, 0.0);
   double window_power = 0;
   for (std::size_t i = 0; i < block; ++i) {
-    window[i] = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(block));
+    window[i] = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) /
+                                     static_cast<double>(block));
     window_power += window[i] * window[i];
   }
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<std::complex<double>> bins;
   int blocks = 0;
-  for (std::size_t begin = 0; begin + block <= values.size(); begin += std::max<std::size_t>(1, block / 2), ++blocks) {
+  for (std::size_t begin = 0; begin + block <= values.size();
+       begin += std::max<std::size_t>(1, block / 2), ++blocks) {
     double mean = 0;
     for (std::size_t i = 0; i < block; ++i) mean += values[begin + i] / static_cast<double>(block);
     for (std::size_t i = 0; i < block; ++i) windowed[i] = window[i] * (values[begin + i] - mean);
@@ -160,28 +199,41 @@ Spectrum welch(std::span<const double> values, double interval_s, std::size_t bl
 
 Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz) {
   Figure figure{.title = "Spectra of the steady part",
-                .subtitle = fmt::format("wave period {:g} s, wave height {:g} cm, repeat {}; amplitude density, Hann blocks of ten periods", run.period_s,
-                                        run.height_m / kCentimetre, run.repeat + 1),
+                .subtitle = fmt::format("wave period {:g} s, wave height {:g} cm, repeat {}; Hann "
+                                        "blocks of ten periods, means over 1/12 octave",
+                                        run.period_s, run.height_m / kCentimetre, run.repeat + 1),
                 .columns = 2,
                 .height_mm = 100};
-  const auto steady = [&](std::int64_t utime) { return utime >= run.steady_begin_utime && utime < run.steady_end_utime; };
+  const auto steady = [&](std::int64_t utime) {
+    return utime >= run.steady_begin_utime && utime < run.steady_end_utime;
+  };
   const double interval_s = median_interval_s(run.imu);
-  const auto block_of = [&](double dt) { return dt > 0 ? 2 * static_cast<std::size_t>(5 * run.period_s / dt) : 0; };
-  Panel force{.title = "(a) Specific force", .x = {.label = "Frequency", .unit = "Hz", .scale = Scale::kLog},
+  const auto block_of = [&](double dt) {
+    return dt > 0 ? 2 * static_cast<std::size_t>(5 * run.period_s / dt) : 0;
+  };
+  Panel force{.title = "(a) Specific force",
+              .x = {.label = "Frequency", .unit = "Hz", .scale = Scale::kLog},
               .y = {.label = "Density", .unit = "m/s\u00B2/\u221AHz", .scale = Scale::kLog}};
   std::array<std::vector<double>, 3> axes;
   for (const estimator::ImuSample& sample : run.imu) {
     if (!steady(sample.utime)) continue;
-    for (std::size_t axis = 0; axis < 3; ++axis) axes[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      axes[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Spectrum s = welch(axes[axis], interval_s, block_of(interval_s));
-    force.marks.emplace_back(Line{.x = s.frequency_hz, .y = s.density_rthz, .name = fmt::format("f {}", kAxisNames[axis]),
+    const Spectrum s = banded(welch(axes[axis], interval_s, block_of(interval_s)));
+    force.marks.emplace_back(Line{.x = s.frequency_hz,
+                                  .y = s.density_rthz,
+                                  .name = fmt::format("f {}", kAxisNames[axis]),
                                   .look = {.color = static_cast<int>(axis), .width_pt = 0.8}});
   }
   if (noise_density_mps2_rthz > 0)
-    force.marks.emplace_back(Rule{.at = noise_density_mps2_rthz, .name = "noise floor of the bound", .look = {.color = kInk, .width_pt = 1, .dash = Dash::kDashed}});
-  Panel heave{.title = "(b) Heave", .x = force.x, .y = {.label = "Density", .unit = "m/\u221AHz", .scale = Scale::kLog}};
+    force.marks.emplace_back(Rule{.at = noise_density_mps2_rthz,
+                                  .name = "noise floor",
+                                  .look = {.color = kInk, .width_pt = 1, .dash = Dash::kDashed}});
+  Panel heave{.title = "(b) Heave",
+              .x = force.x,
+              .y = {.label = "Density", .unit = "m/\u221AHz", .scale = Scale::kLog}};
   const auto add = [&](const std::string& name, int color, const auto& samples, Dash dash) {
     std::vector<double> values;
     std::int64_t first = 0, last = 0;
@@ -192,12 +244,19 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
       values.push_back(sample.heave_m);
     }
     if (values.size() < 16) return;
-    const double dt = static_cast<double>(last - first) * kMicrosecond / static_cast<double>(values.size() - 1);
-    const Spectrum s = welch(values, dt, block_of(dt));
-    heave.marks.emplace_back(Line{.x = s.frequency_hz, .y = s.density_rthz, .name = name, .look = {.color = color, .width_pt = 0.9, .dash = dash}});
+    const double dt =
+        static_cast<double>(last - first) * kMicrosecond / static_cast<double>(values.size() - 1);
+    const Spectrum s = banded(welch(values, dt, block_of(dt)));
+    heave.marks.emplace_back(Line{.x = s.frequency_hz,
+                                  .y = s.density_rthz,
+                                  .name = name,
+                                  .look = {.color = color, .width_pt = 0.9, .dash = dash}});
   };
+  std::vector<std::string> methods;
+  for (const auto& [method, samples] : run.heave) methods.push_back(method);
   int color = 0;
-  for (const auto& [method, samples] : run.heave) add(method, color++, samples, Dash::kSolid);
+  for (const std::string& method : in_order(methods))
+    add(method, color++, run.heave.at(method), Dash::kSolid);
   add("truth", kInk, run.truth, Dash::kDashed);
   force.legend = heave.legend = Legend::kAbove;
   figure.panels = {std::move(force), std::move(heave)};

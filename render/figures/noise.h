@@ -10,7 +10,8 @@
 
 namespace waverig::render {
 
-// One quantity at rest, axis by axis, evenly sampled; several records of it are pooled.
+// One quantity at rest, axis by axis, evenly sampled; several records of it are
+// pooled.
 struct RestRecord {
   double interval_s = 0;
   std::array<std::vector<double>, 3> axes;
@@ -20,18 +21,22 @@ struct RestRecords {
   bool empty() const { return specific_force_mps2.empty(); }
 };
 
-// The part of a run before anything moves, told from the truth; gaps in the samples end it.
+// The part of a run before anything moves, told from the truth; gaps in the
+// samples end it.
 RestRecords rest_of(const evaluation::RunRecord& run);
 void append(RestRecords& to, RestRecords&& from);
 
-// Overlapping Allan deviation with the noise terms fitted to it (IEEE Std 952-1997) named in the legend.
+// Overlapping Allan deviation with the noise terms fitted to it (IEEE Std
+// 952-1997) named in the legend.
 Figure allan_figure(const RestRecords& rest);
 
-// One-sided amplitude densities over the steady part: specific force on each axis with the noise floor, and the heave
-// of each method beside the truth. noise_density: of the vertical acceleration, NaN where unknown.
+// One-sided amplitude densities over the steady part: specific force on each
+// axis with the noise floor, and the heave of each method beside the truth.
+// noise_density: of the vertical acceleration, NaN where unknown.
 Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz);
 
-// Welch: half-overlapping Hann blocks, mean removed from each. Returns amplitude density against frequency, without 0 Hz.
+// Welch: half-overlapping Hann blocks, mean removed from each. Returns
+// amplitude density against frequency, without 0 Hz.
 struct Spectrum {
   std::vector<double> frequency_hz, density_rthz;
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +17,8 @@ double since_start_s(const evaluation::RunRecord& run, std::int64_t utime) {
 }
 
 std::string setting_text(const evaluation::RunRecord& run) {
-  return fmt::format("wave period {:g} s, wave height {:g} cm, repeat {}", run.period_s, run.height_m / kCentimetre, run.repeat + 1);
+  return fmt::format("wave period {:g} s, wave height {:g} cm, repeat {}", run.period_s,
+                     run.height_m / kCentimetre, run.repeat + 1);
 }
 
 const char* calibration_text(bool calibrated) {
@@ -30,9 +33,33 @@ bool steady(const evaluation::RunRecord& run, const estimator::Wave& wave) {
 // What lies outside the steady part is shaded: it is in no statistics.
 void shade_ramps(const evaluation::RunRecord& run, double end_s, Panel& panel, bool named) {
   if (run.steady_end_utime <= run.steady_begin_utime) return;
-  panel.marks.emplace_back(Span{.from = 0, .to = since_start_s(run, run.steady_begin_utime),
+  panel.marks.emplace_back(Span{.from = 0,
+                                .to = since_start_s(run, run.steady_begin_utime),
                                 .name = named ? "rest and ramps, left out of the statistics" : ""});
   panel.marks.emplace_back(Span{.from = since_start_s(run, run.steady_end_utime), .to = end_s});
+}
+
+// A constant error of the acceleration makes a parabola of the trace: without
+// it the wave shows. Outside the steady part the trace is left out.
+std::vector<double> less_parabola(const Line& line, double begin_s, double end_s) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  const double middle = 0.5 * (begin_s + end_s), half = std::max(1e-9, 0.5 * (end_s - begin_s));
+  const auto row = [&](double t) {
+    return Eigen::Vector3d(1, (t - middle) / half, (t - middle) * (t - middle) / (half * half));
+  };
+  for (std::size_t i = 0; i < line.x.size(); ++i) {
+    if (line.x[i] < begin_s || line.x[i] >= end_s || !std::isfinite(line.y[i])) continue;
+    const Eigen::Vector3d r = row(line.x[i]);
+    normal += r * r.transpose();
+    right += r * line.y[i];
+  }
+  const Eigen::Vector3d parabola = normal.ldlt().solve(right);
+  std::vector<double> rest(line.x.size(), kAuto);
+  for (std::size_t i = 0; i < line.x.size(); ++i) {
+    if (line.x[i] >= begin_s && line.x[i] < end_s) rest[i] = line.y[i] - row(line.x[i]).dot(parabola);
+  }
+  return rest;
 }
 
 }  // namespace
@@ -60,11 +87,13 @@ Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces&
   std::array<std::vector<double>, 3> f_B;
   for (const estimator::ImuSample& sample : traces.imu) {
     sample_s.push_back(since_start_s(run, sample.utime));
-    for (std::size_t axis = 0; axis < 3; ++axis) f_B[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      f_B[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
   }
   const double end_s = sample_s.empty() ? 0 : sample_s.back();
-  const Axis time{.label = "Time since the start of the record", .unit = "s"};
-  const auto add = [&](const char* title, const char* label, const char* unit, const std::vector<double>& x, std::vector<double> y, int color) {
+  const Axis time{.label = "Time since the start of the record", .unit = "s", .low = 0, .high = end_s};
+  const auto add = [&](const char* title, const char* label, const char* unit, const std::vector<double>& x,
+                       std::vector<double> y, int color) {
     Panel panel{.title = title, .x = time, .y = {.label = label, .unit = unit}};
     shade_ramps(run, end_s, panel, false);
     panel.marks.emplace_back(Line{.x = x, .y = std::move(y), .look = {.color = color, .width_pt = 0.7}});
@@ -78,11 +107,12 @@ Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces&
   return figure;
 }
 
-Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated) {
+Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTraces& traces,
+                                bool calibrated) {
   Figure figure{.title = "Trace of the buoy before its errors are corrected",
                 .subtitle = setting_text(run) + "; " + traces.method + ", " + calibration_text(calibrated),
-                .height_mm = 85};
-  Panel panel{.x = {.label = "Time since the start of the record", .unit = "s"}, .y = {.label = "Heave", .unit = "m"}};
+                .share_x = true,
+                .height_mm = 120};
   Line line{.name = "levelled acceleration, integrated twice", .look = {.color = 0}};
   for (const estimator::HeaveSample& sample : traces.heave) {
     line.x.push_back(since_start_s(run, sample.utime));
@@ -93,25 +123,41 @@ Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTra
     truth.x.push_back(since_start_s(run, sample.utime));
     truth.y.push_back(sample.heave_m);
   }
-  shade_ramps(run, line.x.empty() ? 0 : line.x.back(), panel, false);
-  panel.marks.emplace_back(std::move(line));
-  panel.marks.emplace_back(std::move(truth));
-  figure.panels.push_back(std::move(panel));
+  const Axis time{.label = "Time since the start of the record",
+                  .unit = "s",
+                  .low = 0,
+                  .high = line.x.empty() ? kAuto : line.x.back()};
+  Panel whole{.title = "(a) As it is", .x = time, .y = {.label = "Heave", .unit = "m"}};
+  Panel rest{.title = "(b) Less the parabola that fits the steady part best",
+             .x = time,
+             .y = {.label = "Heave", .unit = "m"},
+             .legend = Legend::kNone};
+  for (Panel* panel : {&whole, &rest}) shade_ramps(run, line.x.empty() ? 0 : line.x.back(), *panel, false);
+  rest.marks.emplace_back(Line{.x = line.x,
+                               .y = less_parabola(line, since_start_s(run, run.steady_begin_utime),
+                                                  since_start_s(run, run.steady_end_utime)),
+                               .look = line.look});
+  rest.marks.emplace_back(truth);
+  whole.marks.emplace_back(std::move(line));
+  whole.marks.emplace_back(std::move(truth));
+  figure.panels = {std::move(whole), std::move(rest)};
   return figure;
 }
 
 Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated) {
-  constexpr double kSampleS = 0.05;   // fine enough to draw a wave with
+  constexpr double kSampleS = 0.05;  // fine enough to draw a wave with
   Line trace{.name = "corrected trace, crests at zero", .look = {.color = 0}};
-  Points steady_heights{.name = "single waves", .look = {.color = 0, .marker = Marker::kCircle, .marker_pt = 3.5}};
-  Points other_heights{.name = "in the ramps", .look = {.color = 0, .marker = Marker::kHollowCircle, .marker_pt = 3.5}};
+  Points steady_heights{.name = "single waves",
+                        .look = {.color = 0, .marker = Marker::kCircle, .marker_pt = 3.5}};
+  Points other_heights{.name = "in the ramps",
+                       .look = {.color = 0, .marker = Marker::kHollowCircle, .marker_pt = 3.5}};
   double n = 0, sum_m = 0, square_m2 = 0;
   for (const estimator::Wave& wave : traces.waves) {
     const double begin_s = since_start_s(run, wave.start_utime);
     const double omega = 2 * std::numbers::pi / wave.period_s, alpha_cm = 0.5 * wave.height_m / kCentimetre;
     for (double t = 0; t < wave.period_s; t += kSampleS) {
       trace.x.push_back(begin_s + t);
-      trace.y.push_back(alpha_cm * (std::cos(omega * t) - 1));   // Lee 2014, eq (13), P_hat0
+      trace.y.push_back(alpha_cm * (std::cos(omega * t) - 1));  // Lee 2014, eq (13), P_hat0
     }
     const bool counted = steady(run, wave);
     Points& heights = counted ? steady_heights : other_heights;
@@ -126,16 +172,22 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
   const double std_m = n > 1 ? std::sqrt(std::max(0.0, (square_m2 - n * mean_m * mean_m) / (n - 1))) : kAuto;
   std::string statistics = "no steady waves";
   if (n > 1) {
-    statistics = fmt::format("mean {:.2f} cm, error rate {:.2f} %, standard deviation {:.2f} cm over {:.0f} waves", mean_m / kCentimetre,
-                             100 * std::abs(mean_m - run.height_m) / run.height_m, std_m / kCentimetre, n);
+    statistics = fmt::format(
+        "mean {:.2f} cm, error rate {:.2f} %, standard deviation "
+        "{:.2f} cm over {:.0f} waves",
+        mean_m / kCentimetre, 100 * std::abs(mean_m - run.height_m) / run.height_m, std_m / kCentimetre, n);
   }
   const PublishedCell& published = calibrated ? kPublishedCalibrated : kPublishedUncalibrated;
-  if (published_cell(run.period_s, run.height_m) != nullptr && run.period_s == published.period_s && run.height_m == published.height_m) {
-    statistics += fmt::format("\npublished: mean {:.2f} cm, error rate {:.2f} %, standard deviation {:.2f} cm", published.mean_height_m / kCentimetre,
-                              published.error_rate_percent, published.std_m / kCentimetre);
+  if (published_cell(run.period_s, run.height_m) != nullptr && run.period_s == published.period_s &&
+      run.height_m == published.height_m) {
+    statistics += fmt::format(
+        "\npublished: mean {:.2f} cm, error rate {:.2f} "
+        "%, standard deviation {:.2f} cm",
+        published.mean_height_m / kCentimetre, published.error_rate_percent, published.std_m / kCentimetre);
   }
-  Figure figure{.title = calibrated ? "Trace and wave heights with the accelerometer calibrated" : "Trace and wave heights without accelerometer calibration",
-                .subtitle = setting_text(run) + "; " + traces.method + ": " + statistics,
+  Figure figure{.title = calibrated ? "Trace and wave heights with the accelerometer calibrated"
+                                    : "Trace and wave heights without accelerometer calibration",
+                .subtitle = setting_text(run) + "\n" + traces.method + ": " + statistics,
                 .share_x = true,
                 .height_mm = 125};
   double end_s = trace.x.empty() ? 0 : trace.x.back();
@@ -145,7 +197,7 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
     truth.y.push_back((sample.heave_m - 0.5 * run.height_m) / kCentimetre);
     end_s = std::max(end_s, truth.x.back());
   }
-  const Axis time{.label = "Time since the start of the record", .unit = "s"};
+  const Axis time{.label = "Time since the start of the record", .unit = "s", .low = 0, .high = end_s};
   Panel top{.title = "(a) Trace of the buoy", .x = time, .y = {.label = "Heave", .unit = "cm"}};
   shade_ramps(run, end_s, top, false);
   top.marks.emplace_back(std::move(truth));

@@ -8,11 +8,12 @@
 
 namespace waverig::render {
 
-// What the method makes of the same run's counts at nominal sensitivities, the accelerometer not calibrated.
+// What the method makes of the same run's counts at nominal sensitivities, the
+// accelerometer not calibrated.
 struct PaperTraces {
   std::string method = "lee2014";
   std::vector<estimator::ImuSample> imu;
-  std::vector<estimator::HeaveSample> heave;   // eq (10), drift and all; its attitude levels
+  std::vector<estimator::HeaveSample> heave;  // eq (10), drift and all; its attitude levels
   std::vector<estimator::Wave> waves;
   bool empty() const { return imu.empty(); }
 };
@@ -24,7 +25,8 @@ PaperTraces recorded_traces(const evaluation::RunRecord& run, const std::string&
 Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated);
 // Figure 5: the trace of eq (10) before any correction.
 Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated);
-// Figures 6 and 7: the corrected trace, crests aligned to zero (eq 13), above the single wave heights.
+// Figures 6 and 7: the corrected trace, crests aligned to zero (eq 13), above
+// the single wave heights.
 Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated);
 
 }  // namespace waverig::render

@@ -1,0 +1,313 @@
+#include "render/report/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <waverig/alarm_t.hpp>
+
+#include "estimator/evaluation/flag_names.h"
+#include "lcmtypes/channels.h"
+#include "lcmtypes/event_log.h"
+#include "render/campaign_figures.h"
+#include "render/report/html.h"
+
+namespace waverig::render {
+namespace {
+
+namespace fs = std::filesystem;
+using evaluation::CampaignResults;
+using evaluation::CellResult;
+using evaluation::RunResult;
+
+double cm(double metres) { return metres / kCentimetre; }
+
+std::string setting_text(double period_s, double height_m) {
+  return fmt::format("{:g} s, {:g} cm", period_s, cm(height_m));
+}
+
+std::string cell_id(double period_s, double height_m, const std::string& method) {
+  return html_id(fmt::format("cell-{:g}s-{:g}cm-{}", period_s, cm(height_m), method));
+}
+std::string run_id(const RunResult& run) { return html_id("run-" + run.run + "-" + run.method); }
+std::string wave_id(const RunResult& run, const evaluation::JudgedWave& wave) {
+  return run_id(run) + "-wave-" + std::to_string(wave.wave.seq);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+std::string content_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string intro(const CampaignResults& results) {
+  std::string out = fmt::format(
+      "<header>\n<h1>Wave measurement campaign \u201C{}\u201D</h1>\n"
+      "<p class=\"question\">The question: how well does this low-cost sensor, "
+      "with this estimator, measure "
+      "waves?</p>\n<ul class=\"answer\">\n",
+      html_text(results.name));
+  for (const MethodSummary& s : summaries_of(results)) {
+    out += fmt::format(
+        "<li><strong>{}</strong>: the mean wave height is "
+        "within {:.2f} % of the set height in every "
+        "setting; single waves scatter by {:.2f} to {:.2f} cm",
+        html_text(s.method), s.worst_error_percent, cm(s.least_std_m), cm(s.largest_std_m));
+    if (std::isfinite(s.worst_std_over_bound))
+      out += fmt::format(", at most {:.2f} times the physical limit", s.worst_std_over_bound);
+    out += ".</li>\n";
+  }
+  out += "</ul>\n";
+  if (!results.complete) out += "<p class=\"worse\">This campaign is not complete.</p>\n";
+  return out +
+         "<nav class=\"no-print\"><ul><li><a "
+         "href=\"#results\">Results</a></li><li><a "
+         "href=\"#figures\">Figures</a></li><li><a "
+         "href=\"#budget\">Uncertainty</a></li>"
+         "<li><a href=\"#excluded\">Excluded, flags, "
+         "alarms</a></li><li><a href=\"#runs\">Runs and "
+         "waves</a></li><li><a href=\"#rig\">Rig and sensor</a></li>"
+         "<li><a "
+         "href=\"#reproduce\">Reproduce</a></li></ul></nav>\n</header>\n";
+}
+
+std::string results_section(const CampaignResults& results) {
+  HtmlTable table(
+      "Steady waves of all repeats; lengths in cm. U: expanded "
+      "uncertainty of the mean, k = 2. Limit: "
+      "Cram\u00E9r\u2013Rao bound of the standard "
+      "deviation. A number leads to the runs behind it.",
+      {"Period s", "Height cm", "Method", "Waves", "Mean", "Error rate %", "U (k = 2)", "Std", "Limit",
+       "Std / limit", "RMSE"});
+  for (const CellResult& cell : results.cells) {
+    const evaluation::HeightStatistics& s = cell.statistics;
+    const std::string link = fmt::format("#{}", cell_id(cell.period_s, cell.height_m, cell.method));
+    table.add_row({number_cell(cell.period_s, cell.period_s == std::floor(cell.period_s) ? 0 : 2),
+                   number_cell(cm(cell.height_m), 0), text_cell(cell.method),
+                   number_cell(static_cast<double>(s.waves), 0, link),
+                   number_cell(cm(s.mean_height_m), 2, link), number_cell(s.error_rate_percent, 2, link),
+                   number_cell(cm(s.expanded_uncertainty_m), 2, link), number_cell(cm(s.std_m), 2, link),
+                   number_cell(cm(s.bound_std_m), 2), number_cell(s.std_m / s.bound_std_m, 2),
+                   number_cell(cm(s.rmse_m), 2, link)});
+  }
+  return "<section id=\"results\"><h2>Results</h2>\n" + table.html() + "</section>\n";
+}
+
+std::string figures_section(const fs::path& directory) {
+  std::string out;
+  std::string group;
+  for (const FigureInfo& info : kFigureOrder) {
+    const fs::path path = directory / "figures" / (std::string(info.stem) + ".png");
+    if (!fs::exists(path)) continue;
+    if (group != info.group) {
+      out += (group.empty() ? "" : "</div>\n") +
+             fmt::format("<h3>{}</h3>\n<div class=\"figures\">\n", html_text(info.group));
+      group = info.group;
+    }
+    out += html_figure(path, info.caption);
+  }
+  if (out.empty()) return "";
+  return "<section id=\"figures\"><h2>Figures</h2>\n" + out + "</div>\n</section>\n";
+}
+
+std::string budget_section(const CampaignResults& results) {
+  HtmlTable table(
+      "Contributions to the standard uncertainty of the mean height, in mm (k "
+      "= 1). Type A: from the "
+      "repeats; B: from what is known beforehand.",
+      {"Period s", "Height cm", "Method", "Contribution", "Type", "mm"});
+  for (const CellResult& cell : results.cells) {
+    for (const evaluation::Contribution& part : cell.statistics.budget)
+      table.add_row({number_cell(cell.period_s, 1), number_cell(cm(cell.height_m), 0), text_cell(cell.method),
+                     text_cell(part.name), text_cell(std::string(1, part.type)),
+                     number_cell(1000 * part.sigma_m, 3)});
+  }
+  if (table.empty()) return "";
+  return "<section id=\"budget\"><h2>Uncertainty budget</h2>\n<p>Combined in "
+         "squares, times two: the "
+         "expanded uncertainty U of the table "
+         "above.</p>\n<details><summary>All "
+         "contributions</summary><div>" +
+         table.html() + "</div></details></section>\n";
+}
+
+std::string excluded_section(const CampaignResults& results, const fs::path& directory) {
+  HtmlTable excluded(
+      "Left out: waves in the ramps or cut by the record's "
+      "edge. Counted, but flagged: named.",
+      {"Run", "Method", "Waves counted", "Left out", "Flags of the run", "Flagged waves"});
+  for (const RunResult& run : results.runs) {
+    std::map<std::string, int> flagged;
+    for (const evaluation::JudgedWave& wave : run.waves) {
+      for (const std::string& name : evaluation::flag_names(wave.wave.flags)) ++flagged[name];
+    }
+    std::vector<std::string> words;
+    for (const auto& [name, count] : flagged) words.push_back(fmt::format("{} \u00D7 {}", count, name));
+    excluded.add_row({inner_cell(html_link(fmt::format("#{}", run_id(run)), run.run)), text_cell(run.method),
+                      number_cell(static_cast<double>(run.statistics.waves), 0),
+                      number_cell(static_cast<double>(run.excluded_waves), 0),
+                      text_cell(joined(evaluation::flag_names(run.statistics.flags))),
+                      text_cell(joined(words))});
+  }
+  HtmlTable alarms("Alarms and notes in the recordings", {"Run", "Time s", "Code", "Severity", "Text"});
+  std::map<std::string, bool> seen;
+  for (const RunResult& run : results.runs) {
+    const fs::path log = directory / "runs" / (run.run + ".lcm");
+    if (!seen.emplace(run.run, true).second || !fs::exists(log)) continue;
+    EventLogReader reader(log);
+    LogEvent event;
+    std::int64_t start_utime = 0;
+    while (reader.next(event)) {
+      if (start_utime == 0) start_utime = event.utime;
+      if (event.channel != channel::kAlarm) continue;
+      alarm_t alarm{};
+      if (!event.decode(alarm)) continue;
+      const auto* text = reinterpret_cast<const char*>(alarm.text);
+      const std::size_t length =
+          static_cast<std::size_t>(std::find(text, text + sizeof(alarm.text), '\0') - text);
+      static constexpr std::array<const char*, 3> kSeverities = {"note", "warning", "alarm"};
+      alarms.add_row({text_cell(run.run),
+                      number_cell(static_cast<double>(alarm.utime - start_utime) * kMicrosecond, 1),
+                      number_cell(alarm.code, 0),
+                      text_cell(kSeverities[static_cast<std::size_t>(std::clamp(alarm.severity, 0, 2))]),
+                      inner_cell(html_text({text, length}), true)});
+    }
+  }
+  std::string out =
+      "<section id=\"excluded\"><h2>Excluded, flags and "
+      "alarms</h2>\n<details><summary>Run by "
+      "run</summary><div>" +
+      excluded.html() + "</div></details>\n";
+  out += alarms.empty() ? "<p>No run recorded an alarm.</p>\n" : alarms.html();
+  return out + "</section>\n";
+}
+
+std::string runs_section(const CampaignResults& results) {
+  std::string out = "<section id=\"runs\"><h2>Runs and waves</h2>\n";
+  for (const CellResult& cell : results.cells) {
+    HtmlTable table(fmt::format("{}, {}", setting_text(cell.period_s, cell.height_m), cell.method),
+                    {"Run", "Repeat", "Waves", "Mean cm", "True mean cm", "Std cm", "RMSE cm",
+                     "Largest error cm", "Recording"});
+    std::string waves;
+    for (const RunResult& run : results.runs) {
+      if (run.period_s != cell.period_s || run.height_m != cell.height_m || run.method != cell.method)
+        continue;
+      const evaluation::JudgedWave* worst = nullptr;
+      HtmlTable list(
+          fmt::format("Single waves of {}, {}", run.run, run.method),
+          {"Wave", "Start s", "Period s", "Height cm", "True cm", "Error cm", "Noise \u03C3 cm", "Flags"});
+      const std::int64_t first_utime = run.waves.empty() ? 0 : run.waves.front().wave.start_utime;
+      for (const evaluation::JudgedWave& wave : run.waves) {
+        const double error_m = wave.wave.height_m - wave.true_height_m;
+        if (std::isfinite(error_m) &&
+            (worst == nullptr || std::abs(error_m) > std::abs(worst->wave.height_m - worst->true_height_m)))
+          worst = &wave;
+        list.add_row({number_cell(static_cast<double>(wave.wave.seq), 0),
+                      number_cell(static_cast<double>(wave.wave.start_utime - first_utime) * kMicrosecond, 2),
+                      number_cell(wave.wave.period_s, 3), number_cell(cm(wave.wave.height_m), 2),
+                      number_cell(cm(wave.true_height_m), 2), number_cell(cm(error_m), 2),
+                      number_cell(cm(wave.wave.noise_sigma_m), 2),
+                      text_cell(joined(evaluation::flag_names(wave.wave.flags)))},
+                     wave_id(run, wave));
+      }
+      const evaluation::HeightStatistics& s = run.statistics;
+      const std::string here = fmt::format("#{}", run_id(run));
+      table.add_row(
+          {inner_cell(html_link(here, run.run)), number_cell(run.repeat + 1, 0),
+           number_cell(static_cast<double>(s.waves), 0, here), number_cell(cm(s.mean_height_m), 2, here),
+           number_cell(cm(s.mean_true_height_m), 2, here), number_cell(cm(s.std_m), 2, here),
+           number_cell(cm(s.rmse_m), 2, here),
+           worst == nullptr
+               ? number_cell(kAuto, 2)
+               : number_cell(cm(worst->wave.height_m - worst->true_height_m), 2, fmt::format("#{}", wave_id(run, *worst))),
+           inner_cell(html_link("runs/" + run.run + ".lcm", run.run + ".lcm"))});
+      waves += fmt::format(
+          "<details class=\"waves\" id=\"{}\"><summary>{}, {}: {} "
+          "waves</summary><div>{}</div></details>\n",
+          run_id(run), html_text(run.run), html_text(run.method), run.waves.size(), list.html());
+    }
+    if (table.empty()) continue;
+    out += fmt::format("<section id=\"{}\"><h3>{}, {}</h3>\n",
+                       cell_id(cell.period_s, cell.height_m, cell.method),
+                       html_text(setting_text(cell.period_s, cell.height_m)), html_text(cell.method)) +
+           table.html() + waves + "</section>\n";
+  }
+  return out + "</section>\n";
+}
+
+std::string rig_section(const CampaignResults& results, const fs::path& directory) {
+  const std::string settings = content_of(directory / "campaign.toml");
+  if (settings.empty() && results.calibration_json.empty()) return "";
+  std::string out =
+      "<section id=\"rig\"><h2>Rig and sensor</h2>\n<p>A motion controller "
+      "turns an arm that carries a "
+      "gondola; the sensor riding in it streams to the estimator, and what the "
+      "estimator tells is held against what the mechanism really did.</p>\n";
+  if (!settings.empty())
+    out +=
+        "<details><summary>Settings as resolved, defaults "
+        "included</summary><pre>" +
+        html_text(settings) + "</pre></details>\n";
+  if (!results.calibration_json.empty())
+    out +=
+        "<details><summary>Calibration of the sensor at the campaign's "
+        "start</summary><pre>" +
+        html_text(results.calibration_json) + "</pre></details>\n";
+  return out + "</section>\n";
+}
+
+std::string reproduce_section(const CampaignResults& results) {
+  return fmt::format(
+      "<section id=\"reproduce\"><h2>Reproduce</h2>\n<p>The "
+      "same version, settings and seed give the same "
+      "results and the same bytes in the recordings, for any "
+      "number of jobs.</p>\n"
+      "<pre>waverig {}\nseed {}\n{}\n</pre>\n<p>The settings as "
+      "resolved are <code>campaign.toml</code> in "
+      "the results directory: <code>waverig sweep campaign.toml "
+      "--out AGAIN</code>. "
+      "Every recording is an LCM event log that "
+      "<code>lcm-logplayer</code> and <code>lcm-spy</code> "
+      "open.</p></section>\n",
+      html_text(results.version), results.seed, html_text(results.command));
+}
+
+}  // namespace
+
+std::vector<MethodSummary> summaries_of(const CampaignResults& results) {
+  std::vector<MethodSummary> all;
+  for (const CellResult& cell : results.cells) {
+    const evaluation::HeightStatistics& s = cell.statistics;
+    if (s.waves < 1) continue;
+    auto it =
+        std::find_if(all.begin(), all.end(), [&](const MethodSummary& m) { return m.method == cell.method; });
+    if (it == all.end())
+      it = all.insert(all.end(), {.method = cell.method, .least_std_m = s.std_m, .largest_std_m = s.std_m});
+    it->worst_error_percent = std::max(it->worst_error_percent, s.error_rate_percent);
+    it->least_std_m = std::min(it->least_std_m, s.std_m);
+    it->largest_std_m = std::max(it->largest_std_m, s.std_m);
+    const double ratio = s.std_m / s.bound_std_m;
+    if (std::isfinite(ratio))
+      it->worst_std_over_bound =
+          std::isfinite(it->worst_std_over_bound) ? std::max(it->worst_std_over_bound, ratio) : ratio;
+  }
+  return all;
+}
+
+std::string report_html(const CampaignResults& results, const fs::path& directory) {
+  return html_page("waverig: " + results.name, intro(results) + "<main>\n" + results_section(results) +
+                                                   figures_section(directory) + budget_section(results) +
+                                                   excluded_section(results, directory) +
+                                                   runs_section(results) + rig_section(results, directory) +
+                                                   reproduce_section(results) + "</main>\n");
+}
+
+}  // namespace waverig::render

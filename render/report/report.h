@@ -1,0 +1,32 @@
+// report.html: one page that holds everything a campaign found, opens offline,
+// prints, and reads on a phone.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "estimator/evaluation/results.h"
+
+namespace waverig::render {
+
+// What is said of the whole campaign of one method, for the first lines.
+struct MethodSummary {
+  std::string method;
+  double worst_error_percent = 0;  // of the mean height, over the settings
+  double least_std_m = 0, largest_std_m = 0;
+  double worst_std_over_bound = estimator::kUnknown;
+};
+std::vector<MethodSummary> summaries_of(const evaluation::CampaignResults& results);
+
+// HTML of the report of a finished results directory: its figures
+// (figures/*.png), settings (campaign.toml) and the alarms of its logs are
+// taken from there; what is missing is left out. Throws UserError where a log
+// is broken.
+std::string report_html(const evaluation::CampaignResults& results, const std::filesystem::path& directory);
+
+// Two campaigns side by side: better, worse, or not significant, cell by cell.
+std::string comparison_html(const evaluation::CampaignResults& baseline,
+                            const std::filesystem::path& baseline_directory,
+                            const evaluation::CampaignResults& candidate,
+                            const std::filesystem::path& candidate_directory);
+
+}  // namespace waverig::render

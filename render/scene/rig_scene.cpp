@@ -1,0 +1,339 @@
+#include "render/scene/rig_scene.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "render/stroke.h"
+#include "render/ticks.h"
+
+namespace waverig::render {
+namespace {
+
+constexpr int kSupersampling = 2;
+
+constexpr const char* kVertexShader = R"(#version 330 core
+uniform mat4 project;
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 color;
+out vec3 at;
+out vec3 up;
+out vec4 paint;
+void main() {
+  at = position;
+  up = normal;
+  paint = color;
+  gl_Position = project * vec4(position, 1.0);
+})";
+
+// A lamp, a sky above and a ground below; glossier where the paint is seen
+// through (water).
+constexpr const char* kFragmentShader = R"(#version 330 core
+uniform vec3 eye;
+uniform vec3 lamp;
+in vec3 at;
+in vec3 up;
+in vec4 paint;
+out vec4 color;
+void main() {
+  vec3 view = normalize(eye - at);
+  vec3 n = normalize(up);
+  if (dot(n, view) < 0.0) n = -n;
+  float sky = 0.5 + 0.5 * n.z;
+  float lit = max(dot(n, lamp), 0.0);
+  vec3 half_way = normalize(lamp + view);
+  float gloss = paint.a < 1.0 ? 0.55 * pow(max(dot(n, half_way), 0.0), 90.0) : 0.18 * pow(max(dot(n, half_way), 0.0), 40.0);
+  float edge = paint.a < 1.0 ? 0.35 * pow(1.0 - max(dot(n, view), 0.0), 3.0) : 0.0;
+  vec3 shade = paint.rgb * (mix(0.34, 0.58, sky) + 0.55 * lit) + vec3(gloss + 0.4 * edge);
+  color = vec4(min(shade, vec3(1.0)), min(1.0, paint.a + edge + gloss));
+})";
+
+// Sizes of the drawn rig that no record tells, in metres; the arm's length is
+// the run's.
+constexpr double kTowerWidth = 0.07, kGondolaWidth = 0.22, kGondolaHeight = 0.15, kHanger = 0.16,
+                 kWaterBelow = 0.12;
+
+Eigen::Matrix4d perspective(double fov_rad, double aspect, double near_m, double far_m) {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Zero();
+  const double f = 1 / std::tan(0.5 * fov_rad);
+  m(0, 0) = f / aspect;
+  m(1, 1) = -f;  // rows run down the picture
+  m(2, 2) = (far_m + near_m) / (near_m - far_m);
+  m(2, 3) = 2 * far_m * near_m / (near_m - far_m);
+  m(3, 2) = -1;
+  return m;
+}
+
+Eigen::Matrix4d look_at(const Vector3d& eye, const Vector3d& target) {
+  const Vector3d back = (eye - target).normalized(), right = Vector3d::UnitZ().cross(back).normalized(),
+                 up = back.cross(right);
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.block<1, 3>(0, 0) = right.transpose();
+  m.block<1, 3>(1, 0) = up.transpose();
+  m.block<1, 3>(2, 0) = back.transpose();
+  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * eye;
+  return m;
+}
+
+struct Eye {
+  Vector3d eye, target;
+};
+
+Eye eye_of(const SceneSettings& s, double radius_m) {
+  const double reach = radius_m + 0.45;
+  const Vector3d target(0, 0, -0.32 * reach);
+  const double distance = 3.6 * reach;
+  const double ch = std::cos(s.view_height_rad);
+  return {target + distance * Vector3d(ch * std::sin(s.view_azimuth_rad), -ch * std::cos(s.view_azimuth_rad),
+                                       std::sin(s.view_height_rad)),
+          target};
+}
+
+Vector3d arm_tip(const RigMotion& motion, const RigInstant& at) {
+  return motion.radius_m() * Vector3d(std::cos(at.arm_angle_rad), 0, std::sin(at.arm_angle_rad));
+}
+
+// The gondola hangs on the tip; the sensor sits in it. swing: about the shaft's
+// direction.
+Isometry3d gondola_pose(const Vector3d& pivot, const Quaterniond& q_SB) {
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = pivot;
+  // The body's z points down, the scene's up.
+  pose.linear() = q_SB.toRotationMatrix() * Vector3d(1, -1, -1).asDiagonal();
+  return pose;
+}
+
+}  // namespace
+
+struct RigScene::Buffers {
+  GLuint program = make_program(kVertexShader, kFragmentShader);
+  GLuint vertex_array = 0, vertices = 0, indices = 0;
+  Buffers() {
+    glGenVertexArrays(1, &vertex_array);
+    glGenBuffers(1, &vertices);
+    glGenBuffers(1, &indices);
+    glBindVertexArray(vertex_array);
+    glBindBuffer(GL_ARRAY_BUFFER, vertices);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
+    const auto attribute = [](GLuint index, GLint size, std::size_t offset) {
+      glEnableVertexAttribArray(index);
+      glVertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, sizeof(MeshVertex),
+                            reinterpret_cast<const void*>(offset));
+    };
+    attribute(0, 3, offsetof(MeshVertex, position));
+    attribute(1, 3, offsetof(MeshVertex, normal));
+    attribute(2, 4, offsetof(MeshVertex, color));
+  }
+  ~Buffers() {
+    glDeleteBuffers(1, &vertices);
+    glDeleteBuffers(1, &indices);
+    glDeleteVertexArrays(1, &vertex_array);
+    glDeleteProgram(program);
+  }
+  void draw(const Mesh& mesh) const {
+    glBindVertexArray(vertex_array);
+    glBindBuffer(GL_ARRAY_BUFFER, vertices);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(MeshVertex)),
+                 mesh.vertices.data(), GL_STREAM_DRAW);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)), mesh.indices.data(),
+                 GL_STREAM_DRAW);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indices.size()), GL_UNSIGNED_INT, nullptr);
+  }
+};
+
+RigScene::RigScene(Canvas& canvas, const SceneSettings& settings)
+    : canvas_(canvas), settings_(settings), project_(Eigen::Matrix4d::Identity()) {
+  canvas.context().make_current();
+  buffers_ = std::make_unique<Buffers>();
+}
+
+RigScene::~RigScene() { canvas_.context().make_current(); }
+
+void RigScene::prepare_fonts(float text_px) {
+  canvas_.fonts().require(text_px, false);
+  canvas_.fonts().require(text_px, true);
+}
+
+void RigScene::build(const RigMotion& motion, const RigInstant& at) {
+  const bool dark = settings_.theme == Theme::kDark;
+  const Color steel = rgb(0x9AA5B1), frame = rgb(0x5C6773), arm = rgb(0xD9822B), gondola = rgb(0xE9EDF2),
+              sensor = rgb(0x0B6E4F);
+  const double r = motion.radius_m();
+  const double floor_z = -(r + 0.75), depth_y = 0.34;
+  solid_.clear();
+  clear_.clear();
+
+  // 1. The stand: two A-frames behind the arm's plane and the shaft between
+  // them and the arm.
+  for (const double y : {depth_y, depth_y + 0.28}) {
+    for (const double side : {-1.0, 1.0})
+      solid_.add_rod({side * 0.62 * (r + 0.4), y, floor_z}, {0, y, 0}, 0.5 * kTowerWidth * 0.8, frame);
+    solid_.add_rod({-0.34 * (r + 0.4), y, 0.45 * floor_z}, {0.34 * (r + 0.4), y, 0.45 * floor_z}, 0.02,
+                   frame);
+  }
+  solid_.add_rod({0, -0.06, 0}, {0, depth_y + 0.34, 0}, 0.035, steel);
+  Isometry3d motor = Isometry3d::Identity();
+  motor.translation() = Vector3d(0, depth_y + 0.42, 0);
+  solid_.add_box(motor, {0.16, 0.2, 0.16}, rgb(0x37474F));
+
+  // 2. The arm with its counterweight.
+  const Vector3d tip = arm_tip(motion, at), along(std::cos(at.arm_angle_rad), 0, std::sin(at.arm_angle_rad));
+  Isometry3d beam = Isometry3d::Identity();
+  beam.linear() = Eigen::AngleAxisd(-at.arm_angle_rad, Vector3d::UnitY()).toRotationMatrix();
+  const double back = 0.16 + 0.25 * r;
+  beam.translation() = 0.5 * (r - back) * along;
+  solid_.add_box(beam, {r + back + 0.06, 0.045, 0.055}, arm);
+  Isometry3d weight = beam;
+  weight.translation() = -back * along;
+  solid_.add_box(weight, {0.11, 0.1, 0.13}, frame);
+  solid_.add_rod({0, -0.05, 0}, {0, 0.05, 0}, 0.055, steel);
+
+  // 3. The gondola, its hangers, and the sensor in it.
+  const Vector3d pivot = tip + Vector3d(0, -0.09, 0);
+  solid_.add_rod(tip + Vector3d(0, 0.05, 0), pivot + Vector3d(0, -0.14, 0), 0.014, steel);
+  const Isometry3d hang = gondola_pose(pivot, at.q_SB);
+  const auto in_gondola = [](const Isometry3d& pose, const Vector3d& place) {
+    Isometry3d out = pose;
+    out.translation() = pose * place;
+    return out;
+  };
+  for (const double x : {-0.4, 0.4})
+    solid_.add_rod(pivot, hang * Vector3d(x * kGondolaWidth, 0, -kHanger), 0.009, steel);
+  const Vector3d body(0, 0, -kHanger - 0.5 * kGondolaHeight);
+  solid_.add_box(in_gondola(hang, body), {kGondolaWidth, 0.16, kGondolaHeight}, gondola);
+  solid_.add_box(in_gondola(hang, body + Vector3d(0, -0.085, 0)), {0.075, 0.012, 0.05}, sensor);
+
+  // 4. The estimate: the gondola where the method believes it to be.
+  if (at.estimated) {
+    const Vector3d shift(0, 0, at.estimated_heave_m - at.sensor_m.z());
+    const Isometry3d believed = gondola_pose(pivot + shift, at.estimated_q_SB);
+    clear_.add_box(in_gondola(believed, body), {kGondolaWidth * 1.08, 0.175, kGondolaHeight * 1.08},
+                   with_alpha(palette(settings_.theme, 1), 0.30F));
+  }
+
+  // 5. The water: the trochoidal wave (Gerstner 1804) whose particle the
+  // gondola is.
+  constexpr std::size_t kColumns = 90, kRows = 26;
+  const double k = 0.55 / std::max(r, 0.12), level = -kHanger - 0.5 * kGondolaHeight - kWaterBelow;
+  const double half_width = 2.6 * (r + 0.45), near_y = -1.25 * (r + 0.45), far_y = 1.7 * (r + 0.45);
+  std::vector<Vector3d> surface;
+  surface.reserve(kColumns * kRows);
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const double y = near_y + (far_y - near_y) * static_cast<double>(row) / (kRows - 1);
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const double x0 = -half_width + 2 * half_width * static_cast<double>(column) / (kColumns - 1);
+      const double phase = at.arm_angle_rad + k * x0;
+      surface.emplace_back(x0 + r * std::cos(phase), y, level + r * std::sin(phase));
+    }
+  }
+  clear_.add_sheet(surface, kColumns, dark ? rgb(0x1C6EA4, 0.62F) : rgb(0x2F86C1, 0.55F));
+}
+
+void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const RenderTarget& target,
+                    const Rect& area, float text_px) {
+  canvas_.context().make_current();
+  const int width = static_cast<int>(area.width()), height = static_cast<int>(area.height());
+  const int large_width = kSupersampling * width, large_height = kSupersampling * height;
+  if (!large_ || large_->width_px() != large_width || large_->height_px() != large_height) {
+    large_.reset();
+    large_ = std::make_unique<RenderTarget>(large_width, large_height, true);
+  }
+  const Eye eye = eye_of(settings_, motion.radius_m());
+  const double aspect = static_cast<double>(width) / height;
+  // The circle of the arm fits into the narrower side.
+  const double fov = 2 * std::atan(std::tan(0.5 * 40 * std::numbers::pi / 180) * std::max(1.0, 1.0 / aspect));
+  project_ = perspective(fov, aspect, 0.1, 60) * look_at(eye.eye, eye.target);
+  build(motion, instant);
+
+  const Color sky = settings_.theme == Theme::kDark ? rgb(0x14181D) : rgb(0xF3F6F9);
+  large_->bind();
+  glDisable(GL_SCISSOR_TEST);
+  glClearColor(sky.r, sky.g, sky.b, 1);
+  glClearDepth(1);
+  glDepthMask(GL_TRUE);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_CULL_FACE);
+  glUseProgram(buffers_->program);
+  const Eigen::Matrix4f project = project_.cast<float>();
+  glUniformMatrix4fv(glGetUniformLocation(buffers_->program, "project"), 1, GL_FALSE, project.data());
+  const Eigen::Vector3f eye_f = eye.eye.cast<float>(),
+                        lamp = Eigen::Vector3f(-0.45F, -0.62F, 0.75F).normalized();
+  glUniform3fv(glGetUniformLocation(buffers_->program, "eye"), 1, eye_f.data());
+  glUniform3fv(glGetUniformLocation(buffers_->program, "lamp"), 1, lamp.data());
+  glDisable(GL_BLEND);
+  buffers_->draw(solid_);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  buffers_->draw(clear_);
+  glDisable(GL_DEPTH_TEST);
+
+  // Two by two pixels become one: the linear filter of the blit averages
+  // exactly four.
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, large_->framebuffer());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer());
+  const int left = static_cast<int>(area.left), top = static_cast<int>(area.top);
+  glBlitFramebuffer(0, 0, large_width, large_height, left, top, left + width, top + height,
+                    GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  if (settings_.labels) draw_labels(motion, instant, target, area, text_px);
+}
+
+void RigScene::draw_labels(const RigMotion& motion, const RigInstant& at, const RenderTarget& target,
+                           const Rect& area, float text_px) {
+  const ThemeColors& colors = theme_colors(settings_.theme);
+  const auto on_page = [&](const Vector3d& p) {
+    const Eigen::Vector4d clip = project_ * Eigen::Vector4d(p.x(), p.y(), p.z(), 1);
+    return Vec2{area.left + area.width() * static_cast<float>(0.5 + 0.5 * clip.x() / clip.w()),
+                area.top + area.height() * static_cast<float>(0.5 + 0.5 * clip.y() / clip.w())};
+  };
+  canvas_.draw_over(target, [&](Painter& painter) {
+    // A scale of heights beside the rig, with truth and estimate on it.
+    const double r = motion.radius_m(), x = 1.55 * (r + 0.3), low = -r, high = r;
+    const Color truth = colors.ink, estimate = palette(settings_.theme, 1);
+    const auto line = [&](const Vector3d& a, const Vector3d& b, Color color, float width) {
+      painter.stroke(std::array{on_page(a), on_page(b)}, color, width);
+    };
+    const float thin = std::max(1.0F, 0.09F * text_px);
+    line({x, 0, low}, {x, 0, high}, colors.faint_ink, thin);
+    const double step = nice_step(high - low, 4);
+    for (double z = std::ceil(low / step - 1e-9) * step; z <= high + 1e-9; z += step) {
+      line({x, 0, z}, {x + 0.05 * (r + 0.3), 0, z}, colors.faint_ink, thin);
+      const Vec2 p = on_page({x + 0.08 * (r + 0.3), 0, z});
+      painter.text(p, number_text(100 * z, 0) + (z + step > high + 1e-9 ? " cm" : ""),
+                   {.size_px = text_px, .color = colors.faint_ink, .v = VAlign::kMiddle});
+    }
+    const auto pointer = [&](double z, Color color) {
+      const Vec2 tip = on_page({x, 0, z});
+      const float s = 0.75F * text_px;
+      painter.fill_convex(
+          std::array<Vec2, 3>{{tip, {tip.x - s, tip.y - 0.5F * s}, {tip.x - s, tip.y + 0.5F * s}}}, color);
+    };
+    if (at.estimated) pointer(at.estimated_heave_m, with_alpha(estimate, 0.9F));
+    pointer(at.sensor_m.z(), truth);
+
+    // What is what, lower left.
+    float y = area.bottom - 0.8F * text_px;
+    const auto entry = [&](const std::string& text, Color color) {
+      painter.fill_rect({area.left + text_px, y - 0.75F * text_px, area.left + 1.75F * text_px, y}, color);
+      painter.text({area.left + 2.2F * text_px, y}, text, {.size_px = text_px, .color = colors.ink});
+      y -= 1.5F * text_px;
+    };
+    if (at.estimated)
+      entry(fmt::format("estimate of {}, {} cm", motion.method(), number_text(100 * at.estimated_heave_m, 1)),
+            estimate);
+    entry(fmt::format("true heave, {} cm", number_text(100 * at.sensor_m.z(), 1)), truth);
+    painter.text({area.left + text_px, area.top + text_px}, fmt::format("t = {:.1f} s", at.time_s),
+                 {.size_px = text_px, .color = colors.ink, .v = VAlign::kTop, .bold = true});
+    painter.text({area.right - text_px, area.top + text_px},
+                 fmt::format("{:g} s, {:g} cm, repeat {}", motion.run().period_s, 100 * motion.run().height_m,
+                             motion.run().repeat + 1),
+                 {.size_px = text_px, .color = colors.faint_ink, .h = HAlign::kRight, .v = VAlign::kTop});
+  });
+}
+
+}  // namespace waverig::render
