@@ -30,6 +30,7 @@ CalibrationRun run_six_positions(const UnitSettings& settings, const UnitParamet
   std::int64_t utime = run.begin_utime;
   Vector3d gyro_sum = Vector3d::Zero(), gyro_square = Vector3d::Zero();
   double temperature_sum = 0;
+  std::array<double, 6> temperatures_degC{};
   for (std::size_t k = 0; k < kSixPositions.size(); ++k) {
     const StaticPose& pose = kSixPositions[k];
     const Vector3d miss(fixture.gaussian(run.fixture_sigma_rad), fixture.gaussian(run.fixture_sigma_rad),
@@ -56,7 +57,18 @@ CalibrationRun run_six_positions(const UnitSettings& settings, const UnitParamet
     const double n = static_cast<double>(recorder.samples());
     gyro_sum += gyro / n;
     gyro_square += (gyro / n).cwiseAbs2();
-    temperature_sum += temperature / n;
+    temperatures_degC[k] = temperature / n;
+    temperature_sum += temperatures_degC[k];
+  }
+
+  // A position's own scatter knows nothing of what drifts from one position to the next: the data sheet does.
+  const AccelerometerSettings& sheet = settings.accelerometer;
+  const double drift_pdegC =
+      std::hypot(sheet.bias_drift_sigma_mps2pdegC, sheet.scale_drift_sigma_pdegC * gravity_mps2);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const double warmed = drift_pdegC * (temperatures_degC[k] - temperature_sum / 6);
+    result.readings[k].covariance.diagonal().array() +=
+        sheet.instability_sigma_mps2 * sheet.instability_sigma_mps2 + warmed * warmed;
   }
 
   result.fit = estimator::fit_six_positions(result.readings, run.fixture_sigma_rad, run.model);

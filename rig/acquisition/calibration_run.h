@@ -14,7 +14,7 @@ struct CalibrationRunSettings {
   double settle_s = 2;   // after each turn, not used
   double record_s = 30;  // in each position
   double batch_s = 3;
-  double fixture_sigma_rad = 0.05 * kDegree;  // standard uncertainty of the fixture's angles
+  double fixture_sigma_rad = 0.03 * kDegree;  // standard uncertainty of the fixture's angles
   double step_s = 2e-3;                       // of the simulation
   std::int64_t begin_utime = 0;
   std::string sensor_id = "simulated";

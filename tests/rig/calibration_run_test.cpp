@@ -70,6 +70,27 @@ TEST(CalibrationRun, RecoversUnitsWithinItsOwnCovarianceOverManySeeds) {
   EXPECT_NEAR(covered / (12.0 * kRuns), 0.95, 0.02);
 }
 
+TEST(CalibrationRun, StatesWhatDriftsFromPositionToPosition) {
+  UnitSettings s = datasheet_unit();  // with instability and a warming unit, both over the run's minutes
+  s.temperature.warm_up_degC = 5;
+  const Sensitivities nominal = nominal_sensitivities(s);
+  CalibrationRunSettings run = quick();
+  run.settle_s = 10;
+  constexpr int kRuns = 60;
+  double chi = 0;
+  int covered = 0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    const UnitParameters unit = draw_unit(s, seed);
+    const CalibrationRun found = run_six_positions(s, unit, nominal, kG, derived_seed(seed, "drift"), run);
+    const auto truth = true_calibration(s, unit, nominal, found.calibration.temperature_degC);
+    const estimator::CalibrationError error = error_against(found.calibration.accelerometer, truth);
+    chi += error.chi_square / (15 * kRuns);
+    for (int i = 0; i < 15; ++i) covered += std::abs(error.over_sigma[i]) <= 2;
+  }
+  EXPECT_LT(chi, 2);
+  EXPECT_GT(covered / (15.0 * kRuns), 0.9);
+}
+
 TEST(CalibrationRun, TruthIsWhatAPerfectRunFinds) {
   UnitSettings s = datasheet_unit();  // with bend, uneven reset currents, clocks and warmth
   s.temperature = {.mean_degC = 31};
