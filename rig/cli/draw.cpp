@@ -17,13 +17,16 @@ render::PaperTraces uncalibrated_traces(const evaluation::RunRecord& run, const 
 
 }  // namespace
 
-void draw_campaign(const evaluation::CampaignResults& results, const std::filesystem::path& directory,
-                   const rig::CampaignUnit& unit, int jobs) {
+std::vector<std::filesystem::path> draw_campaign(const evaluation::CampaignResults& results,
+                                                 const std::filesystem::path& directory, const rig::CampaignUnit& unit,
+                                                 int jobs, const DrawOptions& wanted) {
   render::FigureOptions options;
+  options.theme = wanted.dark ? render::Theme::kDark : render::Theme::kPrint;
+  options.svg = wanted.svg;
   options.threads = jobs;
   options.provenance = {results.version, results.command, fmt::format("{}", results.seed)};
   options.uncalibrated = [&unit](const evaluation::RunRecord& run) { return uncalibrated_traces(run, unit); };
-  render::draw_campaign_figures(results, directory / "runs", directory / "figures", options);
+  return render::draw_campaign_figures(results, directory / "runs", directory / "figures", options);
 }
 
 }  // namespace waverig::cli
