@@ -1,6 +1,5 @@
 #include "estimator/evaluation/summary.h"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -44,17 +43,27 @@ Summary summary_of(const std::string& method, std::span<const estimator::Wave> w
 }
 
 void take_sea(Summary& summary, std::span<const estimator::SeaState> seas) {
-  const auto duration_s = [](const estimator::SeaState& sea) {
-    return std::isfinite(sea.duration_s) ? sea.duration_s : 0.0;
+  const estimator::SeaState *longest = nullptr, *directed = nullptr;
+  const auto longer = [](const estimator::SeaState& sea, const estimator::SeaState* than) {
+    return than == nullptr || sea.duration_s > than->duration_s;
   };
-  const auto longest = std::max_element(
-      seas.begin(), seas.end(), [&](const auto& a, const auto& b) { return duration_s(a) < duration_s(b); });
-  if (longest == seas.end()) return;
-  summary.hm0_m = longest->hm0_m;
-  summary.tm01_s = longest->tm01_s;
-  summary.tm02_s = longest->tm02_s;
-  summary.tp_s = longest->tp_s;
-  summary.flags |= longest->flags;
+  for (const estimator::SeaState& sea : seas) {
+    if (std::isfinite(sea.hm0_m) && longer(sea, longest)) longest = &sea;
+    if (std::isfinite(sea.mean_direction_rad) && longer(sea, directed)) directed = &sea;
+    summary.flags |= sea.flags;
+  }
+  if (longest != nullptr) {
+    summary.hm0_m = longest->hm0_m;
+    summary.tm01_s = longest->tm01_s;
+    summary.tm02_s = longest->tm02_s;
+    summary.tp_s = longest->tp_s;
+  }
+  if (directed != nullptr) {
+    summary.mean_direction_deg = directed->mean_direction_rad / kDegree;
+    summary.spread_deg = directed->spread_rad / kDegree;
+    summary.peak_direction_deg = directed->peak_direction_rad / kDegree;
+    summary.check_factor = directed->check_factor;
+  }
 }
 
 std::string to_json(const Summary& s) {
@@ -75,6 +84,10 @@ std::string to_json(const Summary& s) {
   put("tm02_s", s.tm02_s);
   put("tp_s", s.tp_s);
   put("expanded_uncertainty_m", s.expanded_uncertainty_m);
+  put("mean_direction_deg", s.mean_direction_deg);
+  put("spread_deg", s.spread_deg);
+  put("peak_direction_deg", s.peak_direction_deg);
+  put("check_factor", s.check_factor);
   put("heave_rms_error_m", s.heave_rms_error_m);
   put("heave_rms_error_percent", s.heave_rms_error_percent);
   put("heave_gain", s.heave_gain);

@@ -18,6 +18,8 @@ struct Summary {
          h110_m = estimator::kUnknown, hmax_m = estimator::kUnknown, mean_period_s = estimator::kUnknown,
          hm0_m = estimator::kUnknown, tm01_s = estimator::kUnknown, tm02_s = estimator::kUnknown,
          tp_s = estimator::kUnknown, expanded_uncertainty_m = estimator::kUnknown;
+  double mean_direction_deg = estimator::kUnknown, spread_deg = estimator::kUnknown,
+         peak_direction_deg = estimator::kUnknown, check_factor = estimator::kUnknown;
   double heave_rms_error_m = estimator::kUnknown;        // against a truth, where one was given
   double heave_rms_error_percent = estimator::kUnknown;  // of 4 standard deviations of that truth
   double heave_gain = estimator::kUnknown, heave_lag_s = estimator::kUnknown;
@@ -29,7 +31,7 @@ Summary summary_of(const std::string& method, const WaveStatistics& statistics);
 // Single waves as a method found them, with the expanded uncertainty (k = 2) of their mean height.
 Summary summary_of(const std::string& method, std::span<const estimator::Wave> waves);
 
-// Spectral sea state: of the longest block, where a method tells several.
+// Spectral sea state, and direction where it is known: of the longest block, where there are several.
 void take_sea(Summary& summary, std::span<const estimator::SeaState> seas);
 
 std::string to_json(const Summary& summary);

@@ -130,6 +130,29 @@ class Collector : public estimator::Output {
   std::int32_t flags_ = 0;
 };
 
+// Methods that know the sea state and direction, where the chosen one does not: their heave and waves are not
+// asked for.
+class SeaStates : public estimator::Output {
+ public:
+  SeaStates(const std::string& chosen, const estimator::MethodSettings& settings) {
+    for (const std::string& name : estimator::method_names())
+      if (name != chosen && (name == "spectral" || name == "directional"))
+        methods_.push_back(estimator::make_method(name, settings));
+  }
+  void sea(const estimator::SeaState& sea) override { seas_.push_back(sea); }
+  void add(const ImuSample& sample) {
+    for (const auto& method : methods_) method->add(sample, *this);
+  }
+  std::vector<estimator::SeaState> finish() {
+    for (const auto& method : methods_) method->finish(*this);
+    return seas_;
+  }
+
+ private:
+  std::vector<std::unique_ptr<estimator::Method>> methods_;
+  std::vector<estimator::SeaState> seas_;
+};
+
 void check_units(double mean_force_mps2, const EstimateArguments& arguments) {
   if (std::abs(mean_force_mps2 - arguments.gravity_mps2) > 0.4 * arguments.gravity_mps2)
     throw UserError(
@@ -153,12 +176,14 @@ int estimate(const EstimateArguments& arguments) {
   fs::remove(out / "summary.json");  // the last to be written: while it is missing the folder is not finished
 
   Collector collector(out / "heave.csv");
+  SeaStates sea_states(arguments.method, settings);
   ImuSample sample;
   double force_sum = 0;
   std::int64_t samples = 0;
   for (; source(sample); ++samples) {
     force_sum += sample.f_B.norm();
     method->add(sample, collector);
+    sea_states.add(sample);
   }
   method->finish(collector);
   check_units(force_sum / static_cast<double>(samples), arguments);
@@ -166,7 +191,9 @@ int estimate(const EstimateArguments& arguments) {
   const std::vector<estimator::Wave> waves = collector.waves();
   evaluation::Summary summary = evaluation::summary_of(arguments.method, waves);
   summary.flags |= collector.flags();
-  evaluation::take_sea(summary, collector.seas());
+  std::vector<estimator::SeaState> seas = sea_states.finish();
+  seas.insert(seas.end(), collector.seas().begin(), collector.seas().end());
+  evaluation::take_sea(summary, seas);
   collector.close();
   evaluation::write_waves_csv(out / "waves.csv", waves);
   evaluation::write_summary(out / "summary.json", summary);

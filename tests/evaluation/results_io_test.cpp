@@ -233,5 +233,22 @@ TEST(Summary, HoldsTheAgreedKeysAndLeavesOutWhatIsUnknown) {
   EXPECT_EQ(json.at("flags"), nlohmann::json::array({"saturation"}));
 }
 
+TEST(Summary, TakesSeaStateAndDirectionFromTheLongestBlocksThatKnowThem) {
+  Summary summary;
+  std::vector<estimator::SeaState> seas(3);
+  seas[0].duration_s = 100;
+  seas[0].hm0_m = 1;
+  seas[1].duration_s = 200;
+  seas[1].hm0_m = 2;
+  seas[1].flags = flag::kTooFewWaves;
+  seas[2].duration_s = 50;
+  seas[2].mean_direction_rad = 90 * kDegree;
+  take_sea(summary, seas);
+  EXPECT_EQ(summary.hm0_m, 2);
+  EXPECT_NEAR(summary.mean_direction_deg, 90, 1e-12);
+  EXPECT_EQ(summary.flags, flag::kTooFewWaves);
+  EXPECT_EQ(to_json(Summary{}).find("direction"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace waverig::evaluation
