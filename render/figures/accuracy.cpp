@@ -350,7 +350,7 @@ Figure single_waves_figure(const CampaignResults& results) {
   const std::vector<std::string> methods = methods_of(results);
   const bool slots = settings.size() <= kMostSlots;
   Figure figure{.title = "Single waves, estimated against true", .columns = 3, .height_mm = 95};
-  Panel against{.title = "(a) Estimated against true",
+  Panel against{.title = "(a) Against true height",
                 .x = {.label = "True height", .unit = "cm"},
                 .y = {.label = "Estimated height", .unit = "cm"}};
   Panel residual{.title = slots ? "(b) Estimated less true, wave after wave" : "(b) Estimated less true",

@@ -79,4 +79,13 @@ void Mesh::add_sheet(const std::vector<Vector3d>& points, std::size_t columns, C
   }
 }
 
+void Mesh::add_shadow(const Mesh& of, const Vector3d& towards_lamp, double floor_m, Color color) {
+  const auto first = static_cast<std::uint32_t>(vertices.size());
+  for (const MeshVertex& v : of.vertices) {
+    const Vector3d p(v.position[0], v.position[1], v.position[2]);
+    add_vertex(p - towards_lamp * ((p.z() - floor_m) / towards_lamp.z()), Vector3d::UnitZ(), color);
+  }
+  for (const std::uint32_t i : of.indices) indices.push_back(first + i);
+}
+
 }  // namespace waverig::render

@@ -33,6 +33,9 @@ struct Mesh {
   // its neighbours.
   void add_sheet(const std::vector<Vector3d>& points, std::size_t columns, Color color);
 
+  // What another mesh leaves of the light on the floor; towards_lamp points up.
+  void add_shadow(const Mesh& of, const Vector3d& towards_lamp, double floor_m, Color color);
+
  private:
   std::uint32_t add_vertex(const Vector3d& position, const Vector3d& normal, Color color);
 };

@@ -34,6 +34,7 @@ void main() {
 constexpr const char* kFragmentShader = R"(#version 330 core
 uniform vec3 eye;
 uniform vec3 lamp;
+uniform vec4 haze;   // colour of the distance, and where it begins
 in vec3 at;
 in vec3 up;
 in vec4 paint;
@@ -48,13 +49,15 @@ void main() {
   float gloss = paint.a < 1.0 ? 0.55 * pow(max(dot(n, half_way), 0.0), 90.0) : 0.18 * pow(max(dot(n, half_way), 0.0), 40.0);
   float edge = paint.a < 1.0 ? 0.35 * pow(1.0 - max(dot(n, view), 0.0), 3.0) : 0.0;
   vec3 shade = paint.rgb * (mix(0.34, 0.58, sky) + 0.55 * lit) + vec3(gloss + 0.4 * edge);
-  color = vec4(min(shade, vec3(1.0)), min(1.0, paint.a + edge + gloss));
+  float far = clamp((length(eye - at) - haze.w) / haze.w, 0.0, 1.0);
+  color = vec4(mix(min(shade, vec3(1.0)), haze.rgb, far), min(1.0, paint.a + edge + gloss));
 })";
 
 // Sizes of the drawn rig that no record tells, in metres; the arm's length is
 // the run's.
-constexpr double kTowerWidth = 0.07, kGondolaWidth = 0.22, kGondolaHeight = 0.15, kHanger = 0.16,
-                 kWaterBelow = 0.12;
+constexpr double kGondolaWidth = 0.22, kGondolaHeight = 0.15, kHanger = 0.16, kWaterBelow = 0.12;
+
+const Vector3d kLamp = Vector3d(-0.45, -0.62, 0.75).normalized();
 
 Eigen::Matrix4d perspective(double fov_rad, double aspect, double near_m, double far_m) {
   Eigen::Matrix4d m = Eigen::Matrix4d::Zero();
@@ -167,12 +170,11 @@ void RigScene::build(const RigMotion& motion, const RigInstant& at) {
   solid_.clear();
   clear_.clear();
 
-  // 1. The stand: two A-frames behind the arm's plane and the shaft between
-  // them and the arm.
+  // 1. The stand: two A-frames behind the arm's plane, and the shaft between them and the arm.
   for (const double y : {depth_y, depth_y + 0.28}) {
     for (const double side : {-1.0, 1.0})
-      solid_.add_rod({side * 0.62 * (r + 0.4), y, floor_z}, {0, y, 0}, 0.5 * kTowerWidth * 0.8, frame);
-    solid_.add_rod({-0.34 * (r + 0.4), y, 0.45 * floor_z}, {0.34 * (r + 0.4), y, 0.45 * floor_z}, 0.02,
+      solid_.add_rod({side * 0.62 * (r + 0.4), y, floor_z}, {0, y, 0}, 0.03, frame);
+    solid_.add_rod({-0.34 * (r + 0.4), y, 0.55 * floor_z}, {0.34 * (r + 0.4), y, 0.55 * floor_z}, 0.02,
                    frame);
   }
   solid_.add_rod({0, -0.06, 0}, {0, depth_y + 0.34, 0}, 0.035, steel);
@@ -215,13 +217,28 @@ void RigScene::build(const RigMotion& motion, const RigInstant& at) {
                    with_alpha(palette(settings_.theme, 1), 0.30F));
   }
 
-  // 5. The water: the trochoidal wave (Gerstner 1804) whose particle the
-  // gondola is.
-  constexpr std::size_t kColumns = 90, kRows = 26;
-  const double k = 0.55 / std::max(r, 0.12), level = -kHanger - 0.5 * kGondolaHeight - kWaterBelow;
-  const double half_width = 2.6 * (r + 0.45), near_y = -1.25 * (r + 0.45), far_y = 1.7 * (r + 0.45);
-  std::vector<Vector3d> surface;
-  surface.reserve(kColumns * kRows);
+  // 5. The floor, tiled by half metres, and what stands on it keeps from the lamp.
+  const double reach = r + 0.45;
+  const Color floor = dark ? rgb(0x39424D) : rgb(0xDDE2E7),
+              joint = mixed(floor, rgb(0x000000), dark ? 0.35F : 0.12F);
+  const Mesh things = solid_;
+  Isometry3d ground = Isometry3d::Identity();
+  ground.translation() = Vector3d(0, 0, floor_z - 0.01);
+  solid_.add_box(ground, {16 * reach, 16 * reach, 0.02}, floor);
+  for (double at_m = -8 * reach; at_m < 8 * reach; at_m += 0.5) {
+    ground.translation() = Vector3d(at_m, 0, floor_z);
+    solid_.add_box(ground, {0.008, 16 * reach, 0.002}, joint);
+    ground.translation() = Vector3d(0, at_m, floor_z);
+    solid_.add_box(ground, {16 * reach, 0.008, 0.002}, joint);
+  }
+  solid_.add_shadow(things, kLamp, floor_z + 0.004, mixed(floor, rgb(0x000000), 0.28F));
+
+  // 6. The water in a flume behind: the trochoidal wave (Gerstner 1804) whose particle the gondola is, as
+  // high as true.
+  constexpr std::size_t kColumns = 120, kRows = 12;
+  const double k = 0.55 / std::max(r, 0.12), level = -kHanger - 0.5 * kGondolaHeight;
+  const double half_width = 5 * reach, near_y = depth_y + 0.62, far_y = near_y + 1.6 * reach;
+  std::vector<Vector3d> surface, front;
   for (std::size_t row = 0; row < kRows; ++row) {
     const double y = near_y + (far_y - near_y) * static_cast<double>(row) / (kRows - 1);
     for (std::size_t column = 0; column < kColumns; ++column) {
@@ -230,7 +247,11 @@ void RigScene::build(const RigMotion& motion, const RigInstant& at) {
       surface.emplace_back(x0 + r * std::cos(phase), y, level + r * std::sin(phase));
     }
   }
-  clear_.add_sheet(surface, kColumns, dark ? rgb(0x1C6EA4, 0.62F) : rgb(0x2F86C1, 0.55F));
+  for (std::size_t column = 0; column < kColumns; ++column)
+    front.emplace_back(surface[column].x(), near_y, floor_z);
+  front.insert(front.end(), surface.begin(), surface.begin() + kColumns);
+  clear_.add_sheet(surface, kColumns, dark ? rgb(0x2A7FB8, 0.80F) : rgb(0x3F97D0, 0.80F));
+  clear_.add_sheet(front, kColumns, dark ? rgb(0x124A70, 0.82F) : rgb(0x2E7DB3, 0.72F));
 }
 
 void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const RenderTarget& target,
@@ -266,6 +287,9 @@ void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const Re
                         lamp = Eigen::Vector3f(-0.45F, -0.62F, 0.75F).normalized();
   glUniform3fv(glGetUniformLocation(buffers_->program, "eye"), 1, eye_f.data());
   glUniform3fv(glGetUniformLocation(buffers_->program, "lamp"), 1, lamp.data());
+  const double distance = (eye.eye - eye.target).norm();
+  glUniform4f(glGetUniformLocation(buffers_->program, "haze"), sky.r, sky.g, sky.b,
+              static_cast<float>(1.25 * distance));
   glDisable(GL_BLEND);
   buffers_->draw(solid_);
   glEnable(GL_BLEND);
