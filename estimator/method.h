@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "estimator/compass/magnetic_calibration.h"
 #include "estimator/types.h"
 
 namespace waverig::estimator {
@@ -25,6 +26,7 @@ struct SensorKnowledge {
 
 struct MethodSettings {
   SensorKnowledge sensor;
+  CompassSettings compass{};                       // used where samples carry a magnetic field
   double fixed_lag_s = 0;                          // for methods that may answer late
 };
 

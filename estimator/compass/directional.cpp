@@ -81,7 +81,7 @@ std::vector<Band> displacement_bands(const CrossSpectra& s, const DirectionalSet
   const double noise_h =
       noise_of(s, s.nn, settings.noise_from_Hz) + noise_of(s, s.ee, settings.noise_from_Hz);
   // Declination enters here and nowhere else: the coefficients turn from magnetic to true.
-  const Complex turn = std::polar(1.0, settings.declination_rad);
+  const Complex turn = std::polar(1.0, settings.compass.declination_rad);
   std::vector<Band> bands(s.frequencies());
   for (std::size_t k = 1; k < bands.size(); ++k) {
     const double f = static_cast<double>(k) * s.step_Hz(), x = std::numbers::pi * f * settings.bin_s;
@@ -183,7 +183,7 @@ void DirectionalAnalysis::add(const LevelSample& sample) {
   open_.a_L += sample.a_L;
   ++open_.samples;
   if (sample.has_field) {
-    open_.m_L += sample.q_LB * settings_.compass.apply(sample.m_B_uT);
+    open_.m_L += sample.q_LB * settings_.compass.calibration.apply(sample.m_B_uT);
     ++open_.fields;
   }
 }

@@ -20,8 +20,7 @@
 namespace waverig::estimator {
 
 struct DirectionalSettings {
-  MagneticCalibration compass{};   // of ImuSample::m_B_uT; the default takes readings as they are
-  double declination_rad = 0;      // of the place: true = magnetic + declination, added once, at the very end
+  CompassSettings compass{};       // its declination is added once, at the very end
   double bin_s = 0.2;              // samples are averaged over it; its sinc is taken out of a0
   double segment_s = 102.4;        // of one Fourier transform; three quarters overlapped
   double rise_s = 20;              // of the taper where the record begins and ends
@@ -31,7 +30,7 @@ struct DirectionalSettings {
   double signal_over_noise = 3;  // a band counts where the vertical acceleration exceeds its noise so much
   double least_share_of_peak = 0.01;  // and where the heave's density reaches so much of its peak: drift and
                                       // leakage at low frequencies have no heave of their own
-  double largest_gap_s = 1;  // a segment with a longer gap is left out
+  double largest_gap_s = 1;           // a segment with a longer gap is left out
   double largest_heading_std_rad =
       30 * kDegree;  // of the compass about its fit: beyond it a segment is left out
 };

@@ -18,6 +18,13 @@ struct MagneticCalibration {
   Vector3d apply(const Vector3d& raw) const { return gain * (raw - offset); }
 };
 
+// What a method knows of its compass: the calibration of ImuSample::m_B_uT (by default readings are taken as
+// they are, calibrated on their way in) and the declination of the place, true = magnetic + declination.
+struct CompassSettings {
+  MagneticCalibration calibration{};
+  double declination_rad = 0;
+};
+
 // How constant the calibrated norm is: its mean and standard deviation over the readings. 0 is perfect.
 struct NormResidual {
   double mean = 0;

@@ -87,8 +87,7 @@ estimator::DirectionalSea analysed(const Compass& compass, const std::vector<est
   // The wheel's path at 20 s is larger than the smoother takes for granted.
   const auto attitudes = estimator::smooth_attitude(samples, {.gravity_mps2 = gravity, .motion_m2s = 3});
   estimator::DirectionalSettings settings;
-  settings.compass = compass.calibration;
-  settings.declination_rad = kDeclination;
+  settings.compass = {compass.calibration, kDeclination};
   estimator::DirectionalAnalysis analysis(settings);
   for (std::size_t i = 0; i < samples.size(); ++i)
     analysis.add({.utime = samples[i].utime,

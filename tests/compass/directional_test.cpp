@@ -57,7 +57,7 @@ BodyMotion regular_wave(double t_s, double period_s, double height_m, double fro
 
 DirectionalSea analysed(const std::function<BodyMotion(double)>& motion, Presenter presenter,
                         double duration_s, DirectionalSettings settings = {}, double rate_Hz = 50) {
-  settings.declination_rad = presenter.declination_rad;
+  settings.compass.declination_rad = presenter.declination_rad;
   DirectionalAnalysis analysis(settings);
   const auto n = static_cast<std::int64_t>(duration_s * rate_Hz);
   for (std::int64_t i = 0; i < n; ++i) analysis.add(presenter(motion(static_cast<double>(i) / rate_Hz)));
@@ -225,7 +225,7 @@ TEST(DirectionalAnalysis, OfACalibratedCompassDoesNot) {
   const MagneticCalibration calibration{presenter.soft_iron.inverse(), presenter.hard_iron};
   const auto wave = [](double t) { return regular_wave(t, 8, 1, 2.0); };
   EXPECT_GT(off_deg(analysed(wave, presenter, 200).mean_direction_rad, 2.0), 5);
-  const DirectionalSea sea = analysed(wave, presenter, 200, {.compass = calibration});
+  const DirectionalSea sea = analysed(wave, presenter, 200, {.compass = {.calibration = calibration}});
   EXPECT_LT(off_deg(sea.mean_direction_rad, 2.0), 0.1);
   EXPECT_LT(sea.field_norm_std, 1e-3);
 }
