@@ -9,6 +9,7 @@
 
 #include "estimator/evaluation/atomic_file.h"
 #include "lcmtypes/error.h"
+#include "render/report/report.h"
 #include "rig/campaign/sweep.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/draw.h"
@@ -60,8 +61,10 @@ int sweep(const SweepArguments& arguments) {
   const evaluation::CampaignResults results =
       rig::run_campaign(campaign, calibrated, rig::runs_of_shard(plan, shard), directory, options);
   draw_campaign(results, directory.working(), calibrated.unit, arguments.jobs);
+  evaluation::write_atomically(directory.working() / "report.html", render::report_html(results, directory.working()));
   directory.finish();
-  fmt::print("{}\nResults: {}\n", rig::results_table(results, campaign.settings.sweep.mover), arguments.out);
+  fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover), arguments.out,
+             (std::filesystem::path(arguments.out) / "report.html").string());
   return 0;
 }
 

@@ -32,7 +32,7 @@ TEST(Program, HelpOfEveryCommandShowsAnExampleAndExitsWithZero) {
   const Outcome help = run(temporary, "--help");
   EXPECT_EQ(help.status, 0);
   EXPECT_NE(help.out.find("Examples:"), std::string::npos);
-  for (const char* command : {"sweep", "plan", "estimate", "evaluate", "figures", "compare", "merge"}) {
+  for (const char* command : {"sweep", "plan", "estimate", "evaluate", "figures", "report", "film", "compare", "merge"}) {
     const Outcome outcome = run(temporary, std::string(command) + " --help");
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_NE(outcome.out.find("waverig " + std::string(command)), std::string::npos) << command;
@@ -89,7 +89,7 @@ TEST(Program, SweepWritesEverythingAResultsDirectoryHolds) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "") << "no progress where stderr is no terminal";
   EXPECT_NE(outcome.out.find("harmonic"), std::string::npos);
-  for (const char* file : {"results.csv", "results.json", "campaign.toml", "calibration.json", "runs/T04.00s_H050.0cm_r1.lcm"})
+  for (const char* file : {"results.csv", "results.json", "report.html", "campaign.toml", "calibration.json", "runs/T04.00s_H050.0cm_r1.lcm"})
     EXPECT_TRUE(std::filesystem::exists(temporary / "out" / file)) << file;
   EXPECT_FALSE(std::filesystem::is_empty(temporary / "out/figures"));
   const std::string csv = bytes_of(temporary / "out/results.csv");
