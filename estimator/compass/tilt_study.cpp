@@ -6,193 +6,14 @@
 #include <mutex>
 #include <thread>
 
-#include "estimator/compass/error_propagation.h"
+#include "estimator/compass/tilt_simulation.h"
 #include "lcmtypes/error.h"
-#include "motion/kinematics/random.h"
 
 namespace waverig::estimator {
 namespace {
 
 constexpr int kPublishedRuns = 100;
 constexpr double kNormal95 = 1.959964;
-
-using Column = std::vector<double>;
-
-// The sweep without errors, by column.
-struct Sweep {
-  struct Case {
-    double cos_heading, sin_heading;
-    Column x, y, z, by_roll, by_pitch;  // field; A and B of eq. (38)
-  };
-  Column tilt, sin_tilt, cos_tilt, ax, ay, az;
-  Column roll_ay, roll_az, pitch_ax, pitch_ay, pitch_az;  // eqs. (28), (32)
-  std::array<Case, 2> cases;
-
-  explicit Sweep(const TiltStudySettings& s) {
-    for (int i = 0; i < s.sweep_points; ++i) {
-      const double angle = s.sweep_rad * (2.0 * i / (s.sweep_points - 1) - 1);
-      const double sn = std::sin(angle), cs = std::cos(angle);
-      const Vector3d triad = s.gravity_mps2 * Vector3d(sn, sn * cs, cs * cs);
-      tilt.push_back(angle);
-      sin_tilt.push_back(sn);
-      cos_tilt.push_back(cs);
-      ax.push_back(triad.x());
-      ay.push_back(triad.y());
-      az.push_back(triad.z());
-      const TiltError x = linear_tilt_error(triad, Vector3d::UnitX()),
-                      y = linear_tilt_error(triad, Vector3d::UnitY()),
-                      z = linear_tilt_error(triad, Vector3d::UnitZ());
-      roll_ay.push_back(y.roll_rad);
-      roll_az.push_back(z.roll_rad);
-      pitch_ax.push_back(x.pitch_rad);
-      pitch_ay.push_back(y.pitch_rad);
-      pitch_az.push_back(z.pitch_rad);
-      for (std::size_t c = 0; c < 2; ++c) {
-        const Vector3d m_B = field_B(s.heading_rad[c], s.dip_rad, {angle, angle});
-        const HeadingGain gain = heading_gain(m_B, {angle, angle});
-        cases[c].x.push_back(m_B.x());
-        cases[c].y.push_back(m_B.y());
-        cases[c].z.push_back(m_B.z());
-        cases[c].by_roll.push_back(gain.by_roll);
-        cases[c].by_pitch.push_back(gain.by_pitch);
-      }
-    }
-    for (std::size_t c = 0; c < 2; ++c) {
-      cases[c].cos_heading = std::cos(s.heading_rad[c]);
-      cases[c].sin_heading = std::sin(s.heading_rad[c]);
-    }
-  }
-  std::size_t points() const { return tilt.size(); }
-};
-
-// atan2 where most errors are small angles: Gregory's series up to t^25 is exact to the last bits below a
-// quarter, and several times faster.
-double small_angle(double y, double x) {
-  const double t = y / x;
-  if (!(x > 0 && std::abs(t) < 0.25)) return std::atan2(y, x);
-  const double u = t * t;
-  double sum = 1.0 / 25;
-  for (int odd = 23; odd >= 1; odd -= 2) sum = 1.0 / odd - u * sum;
-  return t * sum;
-}
-
-struct MeanStd {
-  double mean = 0, std = 0;
-};
-
-MeanStd mean_std(const Column& values) {
-  double sum = 0, square = 0;
-  for (const double v : values) {
-    sum += v;
-    square += v * v;
-  }
-  const double n = static_cast<double>(values.size()), mean = sum / n;
-  return {mean, std::sqrt(std::max(0.0, (square - n * mean * mean) / (n - 1)))};
-}
-
-// What is told of the two-axis module by one run.
-struct RunFigures {
-  MeanStd z;              // of the estimated less the true z along the sweep, case I
-  MeanStd dip, unit_dip;  // of the level turn: eq. (25) as printed, and of the field normalised before
-};
-
-// One run's errors along the sweep.
-struct Run {
-  std::array<Column, kQuantities> error;
-  std::array<Column, 4> predicted;
-  Column z_error, turn_dip, turn_unit_dip;
-  RunFigures figures;
-};
-
-class Simulation {
- public:
-  explicit Simulation(const TiltStudySettings& settings) : s_(settings), sweep_(settings) {}
-
-  const Sweep& sweep() const { return sweep_; }
-
-  void run(std::int64_t index, Run& run) const {
-    RandomStream random(derived_seed(s_.seed, "tilt study", static_cast<std::uint64_t>(index)), "run");
-    const std::size_t n = sweep_.points();
-    for (Column& column : run.error) column.resize(n);
-    for (Column& column : run.predicted) column.resize(n);
-    run.z_error.resize(n);
-    const Vector3d constant(random.gaussian(s_.accel_error_sigma_mps2),
-                            random.gaussian(s_.accel_error_sigma_mps2),
-                            random.gaussian(s_.accel_error_sigma_mps2));
-    for (std::size_t i = 0; i < n; ++i) point(i, constant, random, run);
-    level_turn(random, run);
-    run.figures = {mean_std(run.z_error), mean_std(run.turn_dip), mean_std(run.turn_unit_dip)};
-  }
-
- private:
-  static double& at(Run& run, Quantity quantity, std::size_t i) {
-    return run.error[static_cast<std::size_t>(quantity)][i];
-  }
-
-  // One attitude. Sines and cosines of the measured tilt come from the triad itself; the errors as angles
-  // between measured and true, so that no angle wraps.
-  void point(std::size_t i, const Vector3d& constant, RandomStream& random, Run& run) const {
-    const double dx = constant.x() + random.gaussian(s_.accel_noise_mps2);
-    const double dy = constant.y() + random.gaussian(s_.accel_noise_mps2);
-    const double dz = constant.z() + random.gaussian(s_.accel_noise_mps2);
-    const double ax = sweep_.ax[i] + dx, ay = sweep_.ay[i] + dy, az = sweep_.az[i] + dz;
-    const double h = std::sqrt(ay * ay + az * az), g = std::sqrt(ax * ax + h * h);
-    const double sr = ay / h, cr = az / h, sp = ax / g, cp = h / g;  // eqs. (17), (19)
-    const double s0 = sweep_.sin_tilt[i], c0 = sweep_.cos_tilt[i];
-    const double roll = small_angle(sr * c0 - cr * s0, cr * c0 + sr * s0);
-    const double pitch = small_angle(sp * c0 - cp * s0, cp * c0 + sp * s0);
-    const double roll_linear = sweep_.roll_ay[i] * dy + sweep_.roll_az[i] * dz;  // (28)
-    const double pitch_linear =
-        sweep_.pitch_ax[i] * dx + sweep_.pitch_ay[i] * dy + sweep_.pitch_az[i] * dz;  // (32)
-    at(run, Quantity::kRoll, i) = roll;
-    at(run, Quantity::kPitch, i) = pitch;
-    at(run, Quantity::kRollMiss, i) = roll - roll_linear;
-    at(run, Quantity::kPitchMiss, i) = pitch - pitch_linear;
-    run.predicted[0][i] = roll_linear;
-    run.predicted[1][i] = pitch_linear;
-
-    const double nx = random.gaussian(s_.field_noise), ny = random.gaussian(s_.field_noise),
-                 nz = random.gaussian(s_.field_noise);
-    for (std::size_t c = 0; c < 2; ++c) {
-      const Sweep::Case& of = sweep_.cases[c];
-      const double x = of.x[i] + nx, y = of.y[i] + ny, z = of.z[i] + nz;
-      const double down = y * sr + z * cr;
-      const double N = -y * cr + z * sr, D = x * cp + down * sp;  // eq. (14)
-      const double heading =
-          small_angle(N * of.cos_heading - D * of.sin_heading, D * of.cos_heading + N * of.sin_heading);
-      const double predicted = of.by_roll[i] * roll + of.by_pitch[i] * pitch;  // eq. (38)
-      const double chain = of.by_roll[i] * roll_linear + of.by_pitch[i] * pitch_linear;
-      run.error[static_cast<std::size_t>(Quantity::kHeading1) + c][i] = heading;
-      run.error[static_cast<std::size_t>(Quantity::kHeading1Miss) + c][i] = heading - predicted;
-      run.error[static_cast<std::size_t>(Quantity::kHeading1ChainMiss) + c][i] = heading - chain;
-      run.predicted[2 + c][i] = predicted;
-      if (c == 0) {  // eqs. (23), (24), times cos ph cos th > 0 for the sign
-        const double sign_of_z = std::sin(s_.dip_rad) + x * sp - y * sr * cp;
-        const double magnitude = std::sqrt(std::max(0.0, 1 - x * x - y * y));
-        run.z_error[i] = (sign_of_z * cr < 0 ? -magnitude : magnitude) - of.z[i];
-      }
-    }
-  }
-
-  void level_turn(RandomStream& random, Run& run) const {
-    const auto n = static_cast<std::size_t>(s_.turn_points);
-    run.turn_dip.resize(n);
-    run.turn_unit_dip.resize(n);
-    const double horizontal = std::cos(s_.dip_rad), vertical = std::sin(s_.dip_rad);
-    for (std::size_t i = 0; i < n; ++i) {
-      // Round the circle the noise of x and y is the same in every direction: along and across the field's
-      // own.
-      const double x = horizontal + random.gaussian(s_.field_noise), y = random.gaussian(s_.field_noise);
-      const double z = vertical + random.gaussian(s_.field_noise);
-      const double level = std::sqrt(x * x + y * y);
-      run.turn_dip[i] = std::acos(std::min(1.0, level));  // eq. (25)
-      run.turn_unit_dip[i] = std::atan2(z, level);
-    }
-  }
-
-  TiltStudySettings s_;
-  Sweep sweep_;
-};
 
 // Sums of the first four powers of each quantity at each point, over runs.
 struct Moments {
@@ -204,7 +25,7 @@ struct Moments {
     for (auto& powers : sums)
       for (Column& sum : powers) sum.assign(points, 0);
   }
-  void add(const Run& run) {
+  void add(const TiltRun& run) {
     runs += 1;
     for (std::size_t q = 0; q < kQuantities; ++q) {
       auto& [s1, s2, s3, s4] = sums[q];
@@ -266,7 +87,7 @@ Peak largest_mean(const Curve& curve) {
 
 struct Batch {
   Moments moments;
-  std::vector<RunFigures> runs;
+  std::vector<TiltRunFigures> runs;
 };
 
 // A piece of the work: runs [begin, end); whole experiments of the document's size tell of repeats, and those
@@ -291,13 +112,14 @@ std::vector<Task> tasks_of(std::int64_t runs, int least_repeats) {
 // Works through the tasks on all threads and hands each batch over in the order of the tasks, so that sums
 // round the same way however many threads there are.
 template <typename Consume>
-void in_order(const Simulation& simulation, const std::vector<Task>& tasks, int threads, Consume consume) {
+void in_order(const TiltSimulation& simulation, const std::vector<Task>& tasks, int threads,
+              Consume consume) {
   std::atomic<std::size_t> next_task = 0;
   std::mutex mutex;
   std::map<std::size_t, Batch> waiting;
   std::size_t next_result = 0;
   const auto work = [&] {
-    Run run;
+    TiltRun run;
     for (std::size_t t; (t = next_task++) < tasks.size();) {
       Batch batch{Moments(simulation.sweep().points()), {}};
       for (std::int64_t index = tasks[t].begin; index < tasks[t].end; ++index) {
@@ -394,11 +216,11 @@ Peak peak_of(const CurveFigure& figure, const Moments& moments) {
   return figure.kind == Kind::kLargestStd ? largest_std(curve) : largest_mean(curve);
 }
 
-ExampleRun example_of(const Simulation& simulation, const TiltStudySettings& s) {
-  Run run;
+ExampleRun example_of(const TiltSimulation& simulation, const TiltStudySettings& s) {
+  TiltRun run;
   simulation.run(0, run);
   ExampleRun example;
-  const Sweep& sweep = simulation.sweep();
+  const TiltSweep& sweep = simulation.sweep();
   for (std::size_t a = 0; a < 4; ++a) {
     example.error[a] = run.error[a];
     example.predicted[a] = run.predicted[a];
@@ -429,7 +251,7 @@ void check(const TiltStudySettings& s) {
 
 TiltStudy run_tilt_study(const TiltStudySettings& settings) {
   check(settings);
-  const Simulation simulation(settings);
+  const TiltSimulation simulation(settings);
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const int threads = settings.threads > 0 ? settings.threads : cores;
 
@@ -441,7 +263,7 @@ TiltStudy run_tilt_study(const TiltStudySettings& settings) {
              if (!task.repeats) return;
              for (const CurveFigure& figure : kCurveFigures)
                book.repeat(figure.name, peak_of(figure, batch.moments).value);
-             for (const RunFigures& run : batch.runs) {
+             for (const TiltRunFigures& run : batch.runs) {
                book.repeat(kDipMean, run.dip.mean);
                book.repeat(kDipStd, run.dip.std);
                book.repeat(kUnitDipStd, run.unit_dip.std);

@@ -38,8 +38,6 @@ enum class Quantity {
   kPitchMiss,     // of eq. (32)
   kHeading1Miss,  // of eq. (38) fed with the true tilt errors, as the document does
   kHeading2Miss,
-  kHeading1ChainMiss,  // of eq. (38) fed with eqs. (28) and (32): from the accelerometer's error all the way
-  kHeading2ChainMiss,
   kCount
 };
 inline constexpr int kQuantities = static_cast<int>(Quantity::kCount);
