@@ -3,6 +3,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <tuple>
 
@@ -11,6 +12,7 @@
 #include "render/figures/direction.h"
 #include "render/figures/methods.h"
 #include "render/figures/noise.h"
+#include "render/scene/film.h"
 
 namespace waverig::render {
 namespace {
@@ -38,6 +40,39 @@ void on_threads(int threads, std::size_t n, Work work) {
   worker();
   pool.clear();
   if (failure) std::rethrow_exception(failure);
+}
+
+// One file to be drawn; what it draws must outlive it.
+struct Task {
+  std::filesystem::path path;
+  std::function<void(Canvas&, const std::filesystem::path&)> draw;
+};
+
+std::vector<Task> tasks_of(const std::vector<NamedFigure>& figures, const std::filesystem::path& out,
+                           const FigureOptions& options) {
+  std::vector<Task> tasks;
+  for (const NamedFigure& named : figures) {
+    tasks.push_back(
+        {out / (named.stem + ".png"), [&named, &options](Canvas& canvas, const std::filesystem::path& path) {
+           Figure figure = named.figure;
+           figure.theme = options.theme;
+           save_png(figure, canvas, path, options.provenance);
+           if (!options.svg) return;
+           std::filesystem::path vectors = path;
+           save_svg(figure, canvas.fonts(), vectors.replace_extension("svg"), options.provenance);
+         }});
+  }
+  return tasks;
+}
+
+std::vector<std::filesystem::path> drawn(const std::vector<Task>& tasks, const std::filesystem::path& out,
+                                         int threads) {
+  std::filesystem::create_directories(out);
+  on_threads(threads, tasks.size(),
+             [&](Canvas& canvas, std::size_t i) { tasks[i].draw(canvas, tasks[i].path); });
+  std::vector<std::filesystem::path> paths;
+  for (const Task& task : tasks) paths.push_back(task.path);
+  return paths;
 }
 
 }  // namespace
@@ -95,27 +130,31 @@ std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
 std::vector<std::filesystem::path> write_figures(const std::vector<NamedFigure>& figures,
                                                  const std::filesystem::path& out,
                                                  const FigureOptions& options) {
-  std::filesystem::create_directories(out);
-  std::vector<std::filesystem::path> paths(figures.size());
-  on_threads(options.threads, figures.size(), [&](Canvas& canvas, std::size_t i) {
-    Figure figure = figures[i].figure;
-    figure.theme = options.theme;
-    paths[i] = out / (figures[i].stem + ".png");
-    save_png(figure, canvas, paths[i], options.provenance);
-    if (options.svg) save_svg(figure, canvas.fonts(), out / (figures[i].stem + ".svg"), options.provenance);
-  });
-  return paths;
+  return drawn(tasks_of(figures, out, options), out, options.threads);
 }
 
 std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::CampaignResults& results,
                                                          const std::filesystem::path& runs,
                                                          const std::filesystem::path& out,
                                                          const FigureOptions& options) {
+  const evaluation::RunResult* chosen = paper_run(results);
+  const evaluation::RunRecord run =
+      chosen != nullptr ? evaluation::load_run(runs / (chosen->run + ".lcm")) : evaluation::RunRecord{};
   std::vector<NamedFigure> figures;
-  if (const evaluation::RunResult* run = paper_run(results))
-    figures = run_figures(results, evaluation::load_run(runs / (run->run + ".lcm")), options);
+  if (chosen != nullptr) figures = run_figures(results, run, options);
   for (NamedFigure& figure : result_figures(results)) figures.push_back(std::move(figure));
-  return write_figures(figures, out, options);
+  std::vector<Task> tasks = tasks_of(figures, out, options);
+
+  std::optional<RigMotion> motion;
+  if (!run.truth.empty()) motion.emplace(run, "");
+  if (motion) {
+    tasks.insert(tasks.begin(),
+                 {out / "rig.png", [&](Canvas& canvas, const std::filesystem::path& path) {
+                    const double shown_s = motion->begin_s() + 0.7 * (motion->end_s() - motion->begin_s());
+                    save_rig_picture(*motion, shown_s, canvas, path, options.theme, options.provenance);
+                  }});
+  }
+  return drawn(tasks, out, options.threads);
 }
 
 }  // namespace waverig::render

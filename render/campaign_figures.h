@@ -18,7 +18,7 @@ struct FigureOptions {
   int threads = 1;  // any number gives the same bytes
   Theme theme = Theme::kPrint;
   bool svg = false;  // beside each PNG the same figure as vectors
-  Provenance provenance;
+  Provenance provenance{};
   // The paper's method on the run's counts at nominal sensitivities; without it
   // figures 4 and 5 show the calibrated samples, and figure 6 is left out.
   std::function<PaperTraces(const evaluation::RunRecord&)> uncalibrated;

@@ -17,8 +17,8 @@ const Image& draw(const Figure& figure, Canvas& canvas);
 // What is embedded in a file, so that a picture found alone still tells where
 // it comes from.
 struct Provenance {
-  std::string version, command;
-  std::string seed;
+  std::string version{}, command{};
+  std::string seed{};
 };
 
 // Text chunks of a PNG.

@@ -45,17 +45,4 @@ PanelView view_of(const PanelPlan& plan, const FigurePlan& figure, Painter& pain
 // Pixel size of the figure; throws UserError where it makes no picture.
 void pixel_size(const Figure& figure, int& width_px, int& height_px);
 
-// "Heave (m)", "Torque (×10³ N m)", "Time (2005-07-01 UTC)"
-std::string axis_text(const Axis& axis, const Ticks& ticks);
-// The same where there is little room: the label is shortened, its unit stays.
-std::string axis_text_fitted(const Axis& axis, const Ticks& ticks, float most_px, const FontBook& fonts,
-                             float size_px);
-// The text, or as much of it as fits before an ellipsis.
-std::string fitted(const std::string& text, float most_px, const FontBook& fonts, float size_px,
-                   bool bold = false);
-// Broken at spaces (and at '\n') into at most `most_lines`, the last one
-// fitted.
-std::vector<std::string> wrapped(const std::string& text, float most_px, int most_lines,
-                                 const FontBook& fonts, float size_px, bool bold = false);
-
 }  // namespace waverig::render

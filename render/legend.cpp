@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "render/layout.h"
 #include "render/marks.h"
 #include "render/occupancy.h"
+#include "render/text_fit.h"
 
 namespace waverig::render {
 namespace {

@@ -1,5 +1,8 @@
 // How each mark of a figure takes its place on the axes and is drawn.
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,14 @@ struct Extent {
     add(other.high);
   }
 };
+
+// Whether a value has a place on an axis.
+inline bool fits(double value, Scale scale) {
+  return std::isfinite(value) && (scale != Scale::kLog || value > 0);
+}
+inline double base_of(const Bars& bars, std::size_t i) {
+  return bars.base.empty() ? 0 : bars.base[std::min(i, bars.base.size() - 1)];
+}
 
 // What a mark needs of both axes. On a logarithmic axis only positive values
 // count.

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <array>
 
+#include "render/axis.h"
 #include "render/figure_writer.h"
 #include "render/layout.h"
 #include "render/stroke.h"
+#include "render/text_fit.h"
 
 namespace waverig::render {
 namespace {

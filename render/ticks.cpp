@@ -56,9 +56,11 @@ Ticks linear_ticks(double low, double high, int most) {
   Ticks ticks;
   const double largest = std::max(std::abs(low), std::abs(high)), range = high - low;
   most = std::max(3, most);
-  // The finest round step that fits: depending on where the interval lies, a finer one may fit than its length tells.
+  // The finest round step that fits: depending on where the interval lies, a finer one may fit than its
+  // length tells.
   double step = nice_step(range, 2 * most);
-  while (std::floor(high / step + kSlack) - std::ceil(low / step - kSlack) + 1 > most) step = nice_step(1.5 * step, 1);
+  while (std::floor(high / step + kSlack) - std::ceil(low / step - kSlack) + 1 > most)
+    step = nice_step(1.5 * step, 1);
 
   // A long common part goes to the axis label: a power of ten, or an offset
   // where only the last digits differ.

@@ -18,7 +18,8 @@ struct Ticks {
                        // date; often empty
 };
 
-// Major ticks within [low, high], at most `most` (or 3 where that is less), at least one; low < high, both finite.
+// Major ticks within [low, high], at most `most` (or 3 where that is less), at least one; low < high, both
+// finite.
 Ticks linear_ticks(double low, double high, int most);
 Ticks log_ticks(double low, double high, int most);   // low > 0
 Ticks time_ticks(double low, double high, int most);  // seconds since 1970, UTC

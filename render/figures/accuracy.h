@@ -26,8 +26,4 @@ Figure single_waves_figure(const evaluation::CampaignResults& results);
 // method, each setting's bars together.
 Figure uncertainty_budget_figure(const evaluation::CampaignResults& results);
 
-// Methods in the order of the results; the palette number of each is its place
-// here, in every figure.
-std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
-
 }  // namespace waverig::render

@@ -60,7 +60,7 @@ Panel allan_panel(const std::vector<RestRecord>& records, const Quantity& q) {
   Panel panel{.title = q.title,
               .x = {.label = "Averaging time \u03C4", .unit = "s", .scale = Scale::kLog},
               .y = {.label = "Allan deviation", .unit = q.unit, .scale = Scale::kLog},
-              .legend = Legend::kAbove};
+              .legend = Legend::kFree};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int color = static_cast<int>(axis);
     const std::vector<estimator::AllanPoint> points = pooled(records, axis);
@@ -151,7 +151,7 @@ Figure allan_figure(const RestRecords& rest) {
     longest_s = std::max(longest_s, r.interval_s * static_cast<double>(r.axes[0].size()));
   Figure figure{.title = "Allan deviation of the sensors at rest",
                 .subtitle = fmt::format("calibrated samples, {} record{} of {:.0f} s; bands: one standard "
-                                        "deviation; lines: fitted white noise and bias instability B",
+                                        "deviation; lines: fitted noise",
                                         rest.specific_force_mps2.size(),
                                         rest.specific_force_mps2.size() == 1 ? "" : "s", longest_s),
                 .columns = 2,

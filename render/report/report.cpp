@@ -220,15 +220,15 @@ std::string runs_section(const CampaignResults& results) {
       }
       const evaluation::HeightStatistics& s = run.statistics;
       const std::string here = fmt::format("#{}", run_id(run));
-      table.add_row(
-          {inner_cell(html_link(here, run.run)), number_cell(run.repeat + 1, 0),
-           number_cell(static_cast<double>(s.waves), 0, here), number_cell(cm(s.mean_height_m), 2, here),
-           number_cell(cm(s.mean_true_height_m), 2, here), number_cell(cm(s.std_m), 2, here),
-           number_cell(cm(s.rmse_m), 2, here),
-           worst == nullptr
-               ? number_cell(kAuto, 2)
-               : number_cell(cm(worst->wave.height_m - worst->true_height_m), 2, fmt::format("#{}", wave_id(run, *worst))),
-           inner_cell(html_link("runs/" + run.run + ".lcm", run.run + ".lcm"))});
+      table.add_row({inner_cell(html_link(here, run.run)), number_cell(run.repeat + 1, 0),
+                     number_cell(static_cast<double>(s.waves), 0, here),
+                     number_cell(cm(s.mean_height_m), 2, here),
+                     number_cell(cm(s.mean_true_height_m), 2, here), number_cell(cm(s.std_m), 2, here),
+                     number_cell(cm(s.rmse_m), 2, here),
+                     worst == nullptr ? number_cell(kAuto, 2)
+                                      : number_cell(cm(worst->wave.height_m - worst->true_height_m), 2,
+                                                    fmt::format("#{}", wave_id(run, *worst))),
+                     inner_cell(html_link("runs/" + run.run + ".lcm", run.run + ".lcm"))});
       waves += fmt::format(
           "<details class=\"waves\" id=\"{}\"><summary>{}, {}: {} "
           "waves</summary><div>{}</div></details>\n",

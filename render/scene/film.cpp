@@ -136,8 +136,8 @@ std::vector<double> frame_times_s(const RigMotion& motion, const FilmSettings& s
       static_cast<double>(motion.run().truth.back().utime - motion.run().start_utime) * kMicrosecond;
   if (!(begin_s >= 0) || begin_s >= last_s)
     throw UserError(
-        fmt::format("--from {:g}: expected seconds within the record of {:.1f} s", begin_s, last_s));
-  if (!(duration_s > 0)) throw UserError(fmt::format("--duration {:g}: more than 0 s expected", duration_s));
+        fmt::format("--begin {:g}: expected seconds within the record of {:.1f} s", begin_s, last_s));
+  if (!(duration_s > 0)) throw UserError(fmt::format("--seconds {:g}: more than 0 s expected", duration_s));
   if (!(settings.speed > 0))
     throw UserError(fmt::format("--speed {:g}: more than 0 expected", settings.speed));
   duration_s = std::min(duration_s, last_s - begin_s);

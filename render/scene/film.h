@@ -17,7 +17,7 @@ struct FilmSettings {
                               // steady part's start
   double speed = 1;           // record seconds per film second
   Theme theme = Theme::kDark;
-  Provenance provenance;
+  Provenance provenance{};
 };
 
 // Draws frames of one run; one thread's. Scene on the left, traces on the

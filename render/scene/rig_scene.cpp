@@ -45,9 +45,11 @@ void main() {
   if (dot(n, view) < 0.0) n = -n;
   float sky = 0.5 + 0.5 * n.z;
   float lit = max(dot(n, lamp), 0.0);
-  vec3 half_way = normalize(lamp + view);
-  float gloss = paint.a < 1.0 ? 0.55 * pow(max(dot(n, half_way), 0.0), 90.0) : 0.18 * pow(max(dot(n, half_way), 0.0), 40.0);
-  float edge = paint.a < 1.0 ? 0.35 * pow(1.0 - max(dot(n, view), 0.0), 3.0) : 0.0;
+  float mirror = max(dot(n, normalize(lamp + view)), 0.0);   // to the 64th power and the 3rd, by multiplication: pow is slow
+  mirror *= mirror; mirror *= mirror; mirror *= mirror; mirror *= mirror; mirror *= mirror; mirror *= mirror;
+  float rim = 1.0 - max(dot(n, view), 0.0);
+  float gloss = (paint.a < 1.0 ? 0.5 : 0.15) * mirror;
+  float edge = paint.a < 1.0 ? 0.35 * rim * rim * rim : 0.0;
   vec3 shade = paint.rgb * (mix(0.34, 0.58, sky) + 0.55 * lit) + vec3(gloss + 0.4 * edge);
   float far = clamp((length(eye - at) - haze.w) / haze.w, 0.0, 1.0);
   color = vec4(mix(min(shade, vec3(1.0)), haze.rgb, far), min(1.0, paint.a + edge + gloss));
@@ -55,7 +57,7 @@ void main() {
 
 // Sizes of the drawn rig that no record tells, in metres; the arm's length is
 // the run's.
-constexpr double kGondolaWidth = 0.22, kGondolaHeight = 0.15, kHanger = 0.16, kWaterBelow = 0.12;
+constexpr double kGondolaWidth = 0.22, kGondolaHeight = 0.15, kHanger = 0.16;
 
 const Vector3d kLamp = Vector3d(-0.45, -0.62, 0.75).normalized();
 
@@ -331,14 +333,14 @@ void RigScene::draw_labels(const RigMotion& motion, const RigInstant& at, const 
       painter.text(p, number_text(100 * z, 0) + (z + step > high + 1e-9 ? " cm" : ""),
                    {.size_px = text_px, .color = colors.faint_ink, .v = VAlign::kMiddle});
     }
-    const auto pointer = [&](double z, Color color) {
+    const auto pointer = [&](double z, Color color, float grown) {
       const Vec2 tip = on_page({x, 0, z});
-      const float s = 0.75F * text_px;
+      const float s = 0.75F * grown * text_px;
       painter.fill_convex(
           std::array<Vec2, 3>{{tip, {tip.x - s, tip.y - 0.5F * s}, {tip.x - s, tip.y + 0.5F * s}}}, color);
     };
-    if (at.estimated) pointer(at.estimated_heave_m, with_alpha(estimate, 0.9F));
-    pointer(at.sensor_m.z(), truth);
+    if (at.estimated) pointer(at.estimated_heave_m, estimate, 1.7F);
+    pointer(at.sensor_m.z(), truth, 1);
 
     // What is what, lower left.
     float y = area.bottom - 0.8F * text_px;

@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "render/figures/accuracy.h"
+#include "render/figures/settings.h"
+
+namespace waverig::render {
+
+using evaluation::CampaignResults;
+using evaluation::RunResult;
+
+namespace {
+
+struct Spread {
+  double n = 0, sum = 0, squares = 0;
+  void add(double v) {
+    if (!std::isfinite(v)) return;
+    ++n;
+    sum += v;
+    squares += v * v;
+  }
+  double mean() const { return n > 0 ? sum / n : kAuto; }
+  double sigma_of_mean() const {
+    return n > 1 ? std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1)) / n) : 0;
+  }
+};
+
+}  // namespace
+
+Figure frequency_response_figure(const CampaignResults& results) {
+  Figure figure{.title = "Frequency response",
+                .subtitle =
+                    "mean over the runs of a period; bands and bars: k "
+                    "= 2 standard uncertainties of the mean",
+                .share_x = true,
+                .height_mm = 120};
+  const Axis period{.label = "Wave period", .unit = "s", .padding = 0.08};
+  Panel gain{.title = "(a) Gain: estimated over true wave height",
+             .x = period,
+             .y = {.label = "Gain"},
+             .legend = Legend::kAbove};
+  Panel phase{.title = "(b) Phase: estimated against true heave",
+              .x = period,
+              .y = {.label = "Phase", .unit = "\u00B0"}};
+  gain.marks.emplace_back(
+      Rule{.at = 1, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kDashed}});
+  phase.marks.emplace_back(
+      Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kDashed}});
+  const std::vector<std::string> methods = methods_of(results);
+  const auto add = [](Panel& panel, const std::map<double, Spread>& by_period, const std::string& name,
+                      int color) {
+    Line line{.name = name, .look = {.color = color, .marker = Marker::kCircle, .marker_pt = 4}};
+    Band band{.look = {.color = color, .alpha = 0.18}};
+    ErrorBars bars{.look = {.color = color, .width_pt = 0.8}};
+    for (const auto& [period_s, spread] : by_period) {
+      if (spread.n < 1) continue;
+      const double u = 2 * spread.sigma_of_mean();
+      line.x.push_back(period_s);
+      line.y.push_back(spread.mean());
+      band.x.push_back(period_s);
+      band.low.push_back(spread.mean() - u);
+      band.high.push_back(spread.mean() + u);
+      bars.minus.push_back(u);
+      bars.plus.push_back(u);
+    }
+    if (line.x.empty()) return;
+    bars.x = line.x;
+    bars.y = line.y;
+    panel.marks.emplace_back(std::move(band));
+    panel.marks.emplace_back(std::move(bars));
+    panel.marks.emplace_back(std::move(line));
+  };
+  std::string without_phase;
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    std::map<double, Spread> gains, phases;
+    for (const RunResult& run : results.runs) {
+      if (run.method != methods[m]) continue;
+      const evaluation::HeightStatistics& s = run.statistics;
+      const double ratio = s.waves > 0 ? s.mean_height_m / s.mean_true_height_m : run.heave_gain;
+      gains[run.period_s].add(ratio);
+      // A trace that ran away from the truth has no phase.
+      if (run.heave_rmse_m < 0.25 * run.height_m)
+        phases[run.period_s].add(-360 * run.heave_lag_s / run.period_s);
+    }
+    add(gain, gains, methods[m], static_cast<int>(m));
+    add(phase, phases, methods[m], static_cast<int>(m));
+    if (phases.empty()) without_phase += (without_phase.empty() ? "" : ", ") + methods[m];
+  }
+  if (!without_phase.empty())
+    phase.marks.emplace_back(Note{.x = 0.01,
+                                  .y = 0.97,
+                                  .text = "no phase, for its heave drifts: " + without_phase,
+                                  .color = kFaintInk});
+  figure.panels = {std::move(gain), std::move(phase)};
+  return figure;
+}
+
+}  // namespace waverig::render

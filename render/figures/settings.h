@@ -1,0 +1,33 @@
+// The settings of a campaign, as its figures go through them.
+#pragma once
+#include <compare>
+#include <string>
+#include <vector>
+
+#include "estimator/evaluation/results.h"
+#include "render/figure.h"
+
+namespace waverig::render {
+
+struct Setting {
+  double period_s, height_m;
+  auto operator<=>(const Setting&) const = default;
+};
+
+std::vector<Setting> settings_of(const evaluation::CampaignResults& results);  // by period, then height
+// The row of a setting and method, or nullptr.
+const evaluation::CellResult* cell_of(const evaluation::CampaignResults& results, const Setting& setting,
+                                      const std::string& method);
+// Methods as every figure shows them: the palette number of each is its place here.
+std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
+
+Axis settings_axis(const std::vector<Setting>& settings);  // one category each
+double cm(double metres);
+
+// The grid of periods and heights that a campaign spans.
+struct Grid {
+  std::vector<double> periods_s, heights_m;
+  explicit Grid(const std::vector<Setting>& settings);
+};
+
+}  // namespace waverig::render
