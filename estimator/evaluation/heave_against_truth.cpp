@@ -3,59 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/evaluation/even_series.h"
 #include "estimator/evaluation/high_pass.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::evaluation {
-namespace {
-
-// Straight lines between the known values of a series, read at growing times.
-class Interpolated {
- public:
-  Interpolated(const HeaveSeries& series) {
-    for (std::size_t i = 0; i < series.utime.size(); ++i) {
-      if (!std::isfinite(series.heave_m[i])) continue;
-      utime_.push_back(series.utime[i]);
-      value_.push_back(series.heave_m[i]);
-    }
-  }
-  bool empty() const { return utime_.empty(); }
-  std::int64_t begin() const { return utime_.front(); }
-  std::int64_t end() const { return utime_.back(); }
-  double at(std::int64_t utime) {
-    while (next_ + 1 < utime_.size() && utime_[next_] < utime) ++next_;
-    if (next_ == 0 || utime_[next_] == utime) return value_[next_];
-    const double x = static_cast<double>(utime - utime_[next_ - 1]) /
-                     static_cast<double>(utime_[next_] - utime_[next_ - 1]);
-    return value_[next_ - 1] + x * (value_[next_] - value_[next_ - 1]);
-  }
-
- private:
-  std::vector<std::int64_t> utime_;
-  std::vector<double> value_;
-  std::size_t next_ = 0;
-};
-
-std::int64_t median_interval(const std::vector<std::int64_t>& utime) {
-  std::vector<std::int64_t> interval;
-  for (std::size_t i = 1; i < utime.size(); ++i) interval.push_back(utime[i] - utime[i - 1]);
-  const auto middle = interval.begin() + static_cast<std::ptrdiff_t>(interval.size() / 2);
-  std::nth_element(interval.begin(), middle, interval.end());
-  return *middle;
-}
-
-}  // namespace
 
 HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& truth,
                                    const AgainstTruthSettings& settings) {
-  Interpolated estimate(heave), reference(truth);
-  if (estimate.empty() || reference.empty() || truth.utime.size() < 3)
+  Interpolated estimate(heave.utime, heave.heave_m), reference(truth.utime, truth.heave_m);
+  if (estimate.known() == 0 || reference.known() == 0 || truth.utime.size() < 3)
     throw UserError("heave and truth: one of them holds no heave; expected two series of one record");
   const std::int64_t begin = std::max(estimate.begin(), reference.begin()),
                      end = std::min(estimate.end(), reference.end());
   const std::int64_t step = median_interval(truth.utime);
   if (end - begin < 10 * step)
     throw UserError("heave and truth: they do not overlap in time; expected two series of one record");
+
+  if (mostly_gap(begin, end, step, truth.utime.size()))
+    throw UserError("truth: nearly all of its time is gap; expected a series without hours between its rows");
 
   // An even grid over the common time, both series on it, filtered alike.
   const auto count = static_cast<std::size_t>((end - begin) / step) + 1;

@@ -1,0 +1,126 @@
+#include "estimator/evaluation/heave_spectrum.h"
+
+#include <gtest/gtest.h>
+#include <netcdf.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "estimator/evaluation/netcdf_file.h"
+#include "estimator/evaluation/zero_crossing.h"
+#include "motion/kinematics/random.h"
+#include "tests/evaluation/scratch.h"
+
+namespace waverig::evaluation {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+
+struct Component {
+  double amplitude_m, frequency_hz, phase_rad;
+};
+
+HeaveSeries series(const std::vector<Component>& components, double duration_s, double rate_hz) {
+  HeaveSeries s;
+  for (int i = 0; i < static_cast<int>(duration_s * rate_hz); ++i) {
+    const double t = i / rate_hz;
+    double h = 0.3 + 1e-4 * t;  // what is no sea
+    for (const Component& c : components)
+      h += c.amplitude_m * std::cos(kTwoPi * c.frequency_hz * t + c.phase_rad);
+    s.utime.push_back(1'000'000'000'000 + std::llround(t * 1e6));
+    s.heave_m.push_back(h);
+    s.heave_sigma_m.push_back(estimator::kUnknown);
+  }
+  return s;
+}
+
+TEST(HeaveSpectrum, HoldsTheVarianceOfASineAtItsFrequency) {
+  const HeaveSeries s = series({{0.8, 0.115, 0.3}}, 1800, 2.56);
+  const HeaveSpectrum spectrum = spectrum_of(s.utime, s.heave_m);
+  const estimator::SeaState sea = sea_of(spectrum);
+  EXPECT_NEAR(sea.hm0_m, 4 * 0.8 / std::sqrt(2), 1e-3);
+  EXPECT_NEAR(sea.tp_s, 1 / 0.115, 0.02);
+  EXPECT_NEAR(sea.tm01_s, 1 / 0.115, 0.01);
+  EXPECT_NEAR(sea.tm02_s, 1 / 0.115, 0.02);
+  EXPECT_NEAR(spectrum.resolution_hz, 0.005, 1e-9);
+}
+
+// A sea of known moments: 400 components, random phases; 2 % is what twenty minutes of such a sea scatter by.
+TEST(HeaveSpectrum, TellsTheMomentsOfASea) {
+  RandomStream random(7, "sea");
+  std::vector<Component> components;
+  double m0 = 0, m1 = 0, m2 = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double f = 0.06 + 0.0008 * (k + random.uniform()),
+                 a = 0.05 * std::exp(-std::pow((f - 0.12) / 0.05, 2));
+    components.push_back({a, f, random.uniform(0, kTwoPi)});
+    m0 += a * a / 2;
+    m1 += f * a * a / 2;
+    m2 += f * f * a * a / 2;
+  }
+  const HeaveSeries s = series(components, 2400, 4);
+  const estimator::SeaState sea = sea_of(spectrum_of(s.utime, s.heave_m));
+  EXPECT_NEAR(sea.hm0_m / (4 * std::sqrt(m0)), 1, 0.03);
+  EXPECT_NEAR(sea.tm01_s / (m0 / m1), 1, 0.02);
+  EXPECT_NEAR(sea.tm02_s / std::sqrt(m0 / m2), 1, 0.02);
+}
+
+TEST(HeaveSpectrum, BridgesGapsAndKnowsNothingOfTooLittle) {
+  HeaveSeries s = series({{0.5, 0.1, 0}}, 600, 10);
+  for (std::size_t i = 1000; i < 1005; ++i) s.heave_m[i] = estimator::kUnknown;
+  EXPECT_NEAR(sea_of(spectrum_of(s.utime, s.heave_m)).hm0_m, 2 / std::sqrt(2), 2e-3);
+  EXPECT_TRUE(spectrum_of({}, {}).frequency_hz.empty());
+  s.utime.back() =
+      std::numeric_limits<std::int64_t>::max() / 2;  // centuries of gap are no reason to fill memory
+  EXPECT_TRUE(spectrum_of(s.utime, s.heave_m).frequency_hz.empty());
+  EXPECT_TRUE(std::isnan(sea_of({}).hm0_m));
+}
+
+TEST(NetcdfFile, HoldsHeaveWavesSpectrumAndParametersForAnyReader) {
+  const Scratch scratch;
+  const HeaveSeries heave = series({{0.8, 0.115, 0.3}}, 600, 2.56);
+  const auto waves = waves_of(count_waves(heave.utime, heave.heave_m));
+  const HeaveSpectrum spectrum = spectrum_of(heave.utime, heave.heave_m);
+  Summary summary = summary_of("zero-up-crossing", waves);
+  take_sea(summary, std::vector{sea_of(spectrum)});
+  const auto path = scratch.path() / "record.nc";
+  write_netcdf(path, {heave, waves, spectrum, summary, "waverig test", "a sine"});
+
+  int file = 0, variable = 0, dimension = 0;
+  ASSERT_EQ(nc_open(path.c_str(), NC_NOWRITE, &file), NC_NOERR);
+  std::size_t size = 0;
+  ASSERT_EQ(nc_inq_dimid(file, "time", &dimension), NC_NOERR);
+  nc_inq_dimlen(file, dimension, &size);
+  EXPECT_EQ(size, heave.utime.size());
+  std::vector<double> back(size);
+  ASSERT_EQ(nc_inq_varid(file, "heave", &variable), NC_NOERR);
+  ASSERT_EQ(nc_get_var_double(file, variable, back.data()), NC_NOERR);
+  EXPECT_EQ(back, heave.heave_m);
+  std::vector<long long> time(size);
+  nc_inq_varid(file, "time", &variable);
+  ASSERT_EQ(nc_get_var_longlong(file, variable, time.data()), NC_NOERR);
+  EXPECT_EQ(time.back(), heave.utime.back());
+  double hm0 = 0;
+  ASSERT_EQ(nc_inq_varid(file, "hm0", &variable), NC_NOERR);
+  nc_get_var_double(file, variable, &hm0);
+  EXPECT_EQ(hm0, summary.hm0_m);
+  char standard_name[64] = {};
+  ASSERT_EQ(nc_get_att_text(file, variable, "standard_name", standard_name), NC_NOERR);
+  EXPECT_STREQ(standard_name, "sea_surface_wave_significant_height");
+  EXPECT_NE(nc_inq_varid(file, "mean_direction", &variable), NC_NOERR);  // unknown: not there
+  nc_close(file);
+}
+
+TEST(NetcdfFile, LeavesNothingWhereItCannotBeWritten) {
+  const Scratch scratch;
+  const HeaveSeries heave = series({{0.8, 0.115, 0.3}}, 60, 2.56);
+  const Summary summary;
+  EXPECT_THROW(write_netcdf(scratch.path() / "no" / "record.nc", {heave, {}, {}, summary, "", ""}),
+               std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_empty(scratch.path()));
+}
+
+}  // namespace
+}  // namespace waverig::evaluation
