@@ -15,7 +15,6 @@
 #include "rig/nodes/simulated_sea.h"
 
 namespace waverig::rig {
-namespace {
 
 SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan) {
   SimulatedRigSettings rig{.drive = campaign.drive, .arm = campaign.arm, .unit = unit.settings};
@@ -25,6 +24,22 @@ SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const Campai
   rig.noise_seed = plan.seed;
   return rig;
 }
+
+motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPlan& plan) {
+  motion::ProfileSettings profile = campaign.sweep.profile;
+  profile.period_s = plan.setting.period_s;
+  return motion::RotationProfile(profile);
+}
+
+OrderedRun ordered_run(const RunPlan& plan) { return {plan.setting.period_s, plan.setting.height_m, plan.repeat}; }
+
+Acquisition acquisition_of(const CampaignUnit& unit) {
+  Acquisition acquisition(unit.sensitivities);
+  if (unit.calibrated) acquisition.apply(unit.calibration.accelerometer, unit.calibration.gyroscope);
+  return acquisition;
+}
+
+namespace {
 
 SimulatedSeaSettings sea_settings(const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan) {
   SimulatedSeaSettings sea{.sea = campaign.sweep.sea, .buoy = campaign.sweep.buoy, .unit = unit.settings};
@@ -36,24 +51,10 @@ SimulatedSeaSettings sea_settings(const CampaignSettings& campaign, const Campai
   return sea;
 }
 
-motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPlan& plan) {
-  motion::ProfileSettings profile = campaign.sweep.profile;
-  profile.period_s = plan.setting.period_s;
-  return motion::RotationProfile(profile);
-}
-
-OrderedRun ordered(const RunPlan& plan) { return {plan.setting.period_s, plan.setting.height_m, plan.repeat}; }
-
-Acquisition acquisition_of(const CampaignUnit& unit) {
-  Acquisition acquisition(unit.sensitivities);
-  if (unit.calibrated) acquisition.apply(unit.calibration.accelerometer, unit.calibration.gyroscope);
-  return acquisition;
-}
-
 void turn_arm(Bus& bus, const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan,
               AcquisitionNode& acquisition) {
   SimulatedRig rig(bus, rig_settings(campaign, unit, plan), unit.tested, plan.start_utime);
-  MotionNode motion(bus, rig.drive(), campaign.axis, profile_of(campaign, plan), ordered(plan));
+  MotionNode motion(bus, rig.drive(), campaign.axis, profile_of(campaign, plan), ordered_run(plan));
   const double period_s = campaign.axis.control_period_s;
   const auto period_us = static_cast<std::int64_t>(period_s * 1e6);
   for (std::int64_t utime = plan.start_utime; !motion.finished(); utime += period_us) {
@@ -67,7 +68,7 @@ void turn_arm(Bus& bus, const CampaignSettings& campaign, const CampaignUnit& un
 
 void float_on_sea(Bus& bus, const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan,
                   AcquisitionNode& acquisition) {
-  SimulatedSea sea(bus, sea_settings(campaign, unit, plan), unit.tested, plan.start_utime, ordered(plan));
+  SimulatedSea sea(bus, sea_settings(campaign, unit, plan), unit.tested, plan.start_utime, ordered_run(plan));
   while (!sea.finished()) {
     acquisition.take(sea.advance(unit.settings.sample_interval_s));
     bus.drain();

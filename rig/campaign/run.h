@@ -7,6 +7,8 @@
 #include "estimator/evaluation/run_judge.h"
 #include "rig/campaign/plan.h"
 #include "rig/campaign/settings.h"
+#include "rig/nodes/run_announcer.h"
+#include "rig/nodes/simulated_rig.h"
 
 namespace waverig::rig {
 
@@ -24,6 +26,12 @@ struct CampaignUnit {
 // Throws NegativeAnswer where the motion ended in an alarm.
 std::vector<evaluation::RunResult> run_embedded(const CampaignSettings& campaign, const CampaignUnit& unit,
                                                 const RunPlan& plan, const std::filesystem::path& log);
+
+// The parts of a run, for any mode.
+SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan);
+motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPlan& plan);
+OrderedRun ordered_run(const RunPlan& plan);
+Acquisition acquisition_of(const CampaignUnit& unit);
 
 // How the judge of a run of this campaign is set, embedded or from its log.
 evaluation::JudgeSettings judge_settings(const CampaignUnit& unit);

@@ -1,11 +1,14 @@
 // EstimatorNode: one method on the bus. It hears samples and the begin and end of records, nothing else:
 // no setting, no truth, no clock.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <waverig/imu_t.hpp>
 
 #include "estimator/method.h"
 #include "lcmtypes/bus.h"
+#include "rig/nodes/sequence_watch.h"
 
 namespace waverig::rig {
 
@@ -14,7 +17,13 @@ class EstimatorNode : private estimator::Output {
   // Throws UserError for an unknown method.
   EstimatorNode(Bus& bus, std::string method, const estimator::MethodSettings& settings);
 
+  bool recording() const { return method_ != nullptr; }
+  std::int64_t records() const { return records_; }             // that have ended
+  std::int64_t samples() const { return samples_; }             // of all records
+  std::int64_t samples_missing() const { return samples_missing_; }   // of all records; the next one carries flag::kGap
+
  private:
+  void take(const imu_t& m);
   void begin();
   void end();
   void heave(const estimator::HeaveSample& sample) override;
@@ -25,6 +34,9 @@ class EstimatorNode : private estimator::Output {
   std::string name_, heave_channel_, wave_channel_, sea_channel_;
   estimator::MethodSettings settings_;
   std::unique_ptr<estimator::Method> method_;   // of the record that runs; none between records
+  SequenceWatch count_;
+  bool awaiting_ = false;                       // the record's first sample
+  std::int64_t records_ = 0, samples_ = 0, samples_missing_ = 0;
 };
 
 }  // namespace waverig::rig

@@ -30,16 +30,29 @@ void MotionNode::cycle(std::int64_t utime) {
     controller_.start(profile_, utime + period_us);
     announce_.record(utime + period_us, RecordAction::kBegin);
   }
-  if (started_ && !finished_) announce_.phase(utime, status.phase);
+  const bool alarmed = status.alarm != motion::Alarm::kNone;
+  const bool cut_short = alarmed || stop_wanted_;
+  if (started_ && !finished_) announce_.phase(utime, cut_short ? Phase::kStopped : announced_phase());
   publish_status(utime);
   if (finished_) return;
-  const bool alarmed = status.alarm != motion::Alarm::kNone;
-  if (alarmed) publish_alarm(utime);
-  if (alarmed || status.runs_finished > 0) {
+  if (cut_short) publish_alarm(utime, alarmed ? controller_.alarm_message() : "stopped before the run's end, as told");
+  if (cut_short || status.runs_finished > 0) {
     finished_ = true;
     controller_.stop();
     if (started_) announce_.record(utime, RecordAction::kEnd);
   }
+}
+
+bool MotionNode::at_rest() const {
+  const motion::AxisState state = controller_.status().state;
+  return state == motion::AxisState::kIdle || state == motion::AxisState::kLocked;
+}
+
+// While the profile's time is held, or eases out of it or back, the wave is not the one that was ordered.
+Phase MotionNode::announced_phase() const {
+  const auto& status = controller_.status();
+  const bool held = status.state == motion::AxisState::kRunning && status.hold != motion::RunClock::State::kRunning;
+  return held ? Phase::kHeld : status.phase;
 }
 
 void MotionNode::publish_status(std::int64_t utime) {
@@ -60,14 +73,13 @@ void MotionNode::publish_status(std::int64_t utime) {
   bus_.publish(channel::kAxis, m);
 }
 
-void MotionNode::publish_alarm(std::int64_t utime) {
+void MotionNode::publish_alarm(std::int64_t utime, std::string_view text) {
   constexpr std::int32_t kMotionStops = 2;
   alarm_t m{};
   m.utime = utime;
   m.seq = alarm_seq_++;
   m.code = static_cast<std::int32_t>(controller_.status().alarm);
   m.severity = kMotionStops;
-  const std::string& text = controller_.alarm_message();
   std::memcpy(m.text, text.data(), std::min(text.size(), sizeof m.text));
   bus_.publish(channel::kAlarm, m);
 }

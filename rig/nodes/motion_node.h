@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "lcmtypes/bus.h"
 #include "motion/axis_controller.h"
@@ -17,15 +18,23 @@ class MotionNode {
              const OrderedRun& ordered);
 
   void cycle(std::int64_t utime);
-  bool finished() const { return finished_; }   // the record has ended: done, or alarmed
+  // The record has ended: done, alarmed or stopped. Whoever has the time goes on with cycle() until at_rest().
+  bool finished() const { return finished_; }
+  bool at_rest() const;   // the drive is off
+
+  // Requests; they act in the next cycle. A held span is announced as Phase::kHeld.
+  void stop() { stop_wanted_ = true; }             // ends the run early: quick stop and drive off
+  void hold() { controller_.hold(); }              // feed hold; throws UserError where nothing runs
+  void resume() { controller_.resume(); }
 
   // The alarm that ended the run, with its numbers; empty where there was none.
   const std::string& alarm() const { return controller_.alarm_message(); }
   const motion::AxisStatus& status() const { return controller_.status(); }
 
  private:
+  Phase announced_phase() const;
   void publish_status(std::int64_t utime);
-  void publish_alarm(std::int64_t utime);
+  void publish_alarm(std::int64_t utime, std::string_view text);
 
   Bus& bus_;
   motion::AxisController controller_;
@@ -33,7 +42,7 @@ class MotionNode {
   RunAnnouncer announce_;
   motion::AxisState published_state_ = motion::AxisState::kIdle;
   std::int64_t axis_seq_ = 0, alarm_seq_ = 0, next_status_utime_ = 0;
-  bool started_ = false, finished_ = false;
+  bool started_ = false, finished_ = false, stop_wanted_ = false;
 };
 
 }  // namespace waverig::rig

@@ -4,9 +4,13 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
 
 #include "lcmtypes/bus.h"
 #include "lcmtypes/event_log.h"
+#include "rig/nodes/sequence_watch.h"
 
 namespace waverig::rig {
 
@@ -16,11 +20,14 @@ class RecorderNode {
   RecorderNode(Bus& bus, const std::filesystem::path& path);
   void close();
   std::int64_t events() const { return writer_.events(); }
+  // Channels on which messages were lost, by their seq, and how many.
+  std::map<std::string, std::int64_t> missing() const;
 
  private:
   std::filesystem::path path_, part_;
   std::int64_t latest_utime_ = 0;
   EventLogWriter writer_;
+  std::map<std::string, SequenceWatch, std::less<>> counted_;   // those of waverig that count every message
 };
 
 }  // namespace waverig::rig

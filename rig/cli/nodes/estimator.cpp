@@ -1,0 +1,47 @@
+// waverig node estimator: one method on the bus, record after record.
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "rig/cli/nodes/addresses.h"
+#include "rig/cli/nodes/chosen_run.h"
+#include "rig/cli/nodes/nodes.h"
+#include "rig/cli/nodes/process.h"
+#include "rig/nodes/estimator_node.h"
+
+namespace waverig::cli {
+namespace {
+
+constexpr int kTick_ms = 50;
+
+estimator::MethodSettings method_settings(const EstimatorArguments& arguments) {
+  if (!arguments.campaign.empty())
+    return unit_on_the_rig(rig::read_campaign(arguments.campaign).settings, arguments.calibration).methods;
+  estimator::MethodSettings settings;
+  if (!arguments.calibration.empty())
+    settings.sensor.gravity_mps2 = estimator::load_calibration(arguments.calibration).gravity_mps2;
+  return settings;
+}
+
+}  // namespace
+
+int run_estimator(const EstimatorArguments& arguments) {
+  const estimator::MethodSettings settings = method_settings(arguments);
+  Requests requests;
+  Bus bus = open_bus(arguments.bus);
+  const rig::EstimatorNode node(bus, arguments.method, settings);
+  fmt::print(stderr, "estimator {}: ready\n", arguments.method);
+
+  std::int64_t reported = 0;
+  while (requests.next() != Request::kStop && !(arguments.one_record && node.records() > 0)) {
+    bus.handle(kTick_ms);
+    if (reported == 0 && node.samples_missing() > 0)
+      fmt::print(stderr, "estimator {}: samples are missing, what follows them is flagged\n", arguments.method);
+    reported = node.samples_missing();
+  }
+  fmt::print(stderr, "estimator {}: {} records, {} samples, {} missing{}\n", arguments.method, node.records(), node.samples(),
+             node.samples_missing(), node.recording() ? "; stopped inside a record" : "");
+  return 0;
+}
+
+}  // namespace waverig::cli

@@ -1,0 +1,122 @@
+#include "rig/nodes/motion_node.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+#include <waverig/axis_t.hpp>
+#include <waverig/record_t.hpp>
+#include <waverig/run_t.hpp>
+
+#include "lcmtypes/channels.h"
+#include "motion/simulated_drive.h"
+#include "rig/nodes/run_watch.h"
+
+namespace waverig::rig {
+namespace {
+
+constexpr std::int64_t kPeriod_us = 10000;
+constexpr motion::ProfileSettings kProfile{.period_s = 4, .steady_s = 40, .ramp_periods = 1, .rest_before_s = 1, .rest_after_s = 1};
+
+// A motion node, the simulated drive and all that they say, in virtual time.
+class Laboratory {
+ public:
+  Laboratory() : node_(bus_, drive_, {}, motion::RotationProfile(kProfile), {.period_s = 4, .height_m = 1}) {
+    bus_.subscribe<run_t>(channel::kRun, [this](const run_t& m) { phases.push_back(m); });
+    bus_.subscribe<record_t>(channel::kRecord, [this](const record_t& m) { records.push_back(m.action); });
+  }
+  void run_until(double t_s) {
+    while (1e-6 * static_cast<double>(utime_) < t_s) {
+      utime_ += kPeriod_us;
+      node_.cycle(utime_);
+      drive_.advance(1e-6 * kPeriod_us);
+      bus_.drain();
+    }
+  }
+  double now_s() const { return 1e-6 * static_cast<double>(utime_); }
+  MotionNode& node() { return node_; }
+  motion::SimulatedDrive& drive() { return drive_; }
+  Bus& bus() { return bus_; }
+  Phase last_phase() const { return static_cast<Phase>(phases.back().phase); }
+
+  std::vector<run_t> phases;
+  std::vector<std::int32_t> records;
+
+ private:
+  Bus bus_;
+  motion::SimulatedDrive drive_;
+  MotionNode node_;
+  std::int64_t utime_ = 0;
+};
+
+TEST(MotionNode, AnnouncesAHeldSpanAsHeldAndTheRestAsSteadyAgain) {
+  Laboratory laboratory;
+  laboratory.run_until(15);
+  ASSERT_EQ(laboratory.last_phase(), Phase::kSteady);
+  laboratory.node().hold();
+  laboratory.run_until(25);
+  ASSERT_EQ(laboratory.last_phase(), Phase::kHeld);
+  EXPECT_NEAR(laboratory.drive().shaft().rate_radps, 0, 1e-3) << "it really stands";
+  EXPECT_NEAR(1e-6 * static_cast<double>(laboratory.phases.back().utime), 15, 5) << "announced when it began, not when it stood";
+  laboratory.node().resume();
+  laboratory.run_until(40);
+  EXPECT_EQ(laboratory.last_phase(), Phase::kSteady);
+  EXPECT_NEAR(std::abs(laboratory.drive().shaft().rate_radps), 2 * M_PI / 4, 0.01);
+  laboratory.run_until(120);
+  EXPECT_TRUE(laboratory.node().finished());
+  EXPECT_EQ(laboratory.node().alarm(), "");
+  EXPECT_EQ(std::count_if(laboratory.phases.begin(), laboratory.phases.end(),
+                          [](const run_t& m) { return m.phase == static_cast<std::int32_t>(Phase::kHeld); }),
+            1);
+}
+
+TEST(MotionNode, ToldToStopEndsTheRecordAndLeavesTheDriveOff) {
+  Laboratory laboratory;
+  const RunWatch watch(laboratory.bus());
+  laboratory.run_until(15);
+  ASSERT_FALSE(laboratory.node().finished());
+  laboratory.node().stop();
+  laboratory.run_until(25);
+  EXPECT_TRUE(laboratory.node().finished());
+  EXPECT_TRUE(laboratory.node().at_rest());
+  EXPECT_EQ(laboratory.last_phase(), Phase::kStopped);
+  EXPECT_EQ(laboratory.records, (std::vector<std::int32_t>{1, 2}));
+  EXPECT_TRUE(watch.ended());
+  EXPECT_NE(watch.stopped().find("as told"), std::string::npos) << watch.stopped();
+  EXPECT_NE(laboratory.drive().state(), motion::DriveState::kOperationEnabled);
+  EXPECT_EQ(laboratory.drive().shaft().rate_radps, 0);
+}
+
+TEST(MotionNode, ToldToStopBeforeTheRunBeginsAnnouncesNothing) {
+  Laboratory laboratory;
+  laboratory.node().stop();
+  laboratory.run_until(15);
+  EXPECT_TRUE(laboratory.node().finished());
+  EXPECT_TRUE(laboratory.node().at_rest());
+  EXPECT_TRUE(laboratory.records.empty());
+  EXPECT_TRUE(laboratory.phases.empty());
+}
+
+TEST(MotionNode, AWholeRunIsNotCutShort) {
+  Laboratory laboratory;
+  const RunWatch watch(laboratory.bus());
+  laboratory.run_until(70);
+  EXPECT_TRUE(watch.ended());
+  EXPECT_EQ(watch.stopped(), "");
+  EXPECT_TRUE(laboratory.node().at_rest());
+}
+
+TEST(MotionNode, TellsTheBusOfAnAlarmAndOfItsReason) {
+  Laboratory laboratory;
+  const RunWatch watch(laboratory.bus());
+  laboratory.run_until(15);
+  laboratory.drive().faults.jam_Nm = 500;
+  laboratory.run_until(30);
+  EXPECT_TRUE(watch.ended());
+  EXPECT_NE(watch.stopped().find("alarm"), std::string::npos) << watch.stopped();
+  EXPECT_TRUE(laboratory.node().at_rest());
+}
+
+}  // namespace
+}  // namespace waverig::rig
