@@ -2,6 +2,7 @@
 #include "rig/bench/simulation/simulated_laboratory.h"
 
 #include <gtest/gtest.h>
+#include <netdb.h>
 #include <unistd.h>
 
 #include <array>
@@ -129,6 +130,7 @@ TEST(SimulatedLaboratory, AHungInstrumentAndACutGatewayAreNamed) {
 TEST(SimulatedLaboratory, SpeaksVxi11ToLiblxi) {
   Pair pair;
   if (!pair.simulated.has_vxi11()) GTEST_SKIP() << "no right to the port mapper's port 111";
+  if (::getservbyname("sunrpc", "tcp") == nullptr) GTEST_SKIP() << "the RPC library finds no port mapper without /etc/services";
   const Address a = parse_address(pair.address("generator", "vxi11"), "generator");
   Vxi11Session generator(pair.reactor, "generator", a.host, a.path);
   EXPECT_NE(generator.query("*IDN?", 3).find("GENERATOR"), std::string::npos);
@@ -188,7 +190,7 @@ TEST(IndependentClient, LxiToolsReadTheInstruments) {
       EXPECT_NE(witness("timeout 20 lxi scpi -r -a 127.0.0.1 -p " + std::to_string(a.port) + " '*IDN?'").find("CHAMBER-60"),
                 std::string::npos);
     }
-    if (e.instrument == "chamber" && a.scheme == "vxi11") {
+    if (e.instrument == "chamber" && a.scheme == "vxi11" && ::getservbyname("sunrpc", "tcp") != nullptr) {
       EXPECT_NE(witness("timeout 20 lxi scpi -a " + a.host + " '*IDN?'").find("CAL-2A"), std::string::npos);   // inst0
     }
   }
@@ -216,7 +218,9 @@ TEST(IndependentClient, SigrokReadsTheMultimeter) {
     const Address a = parse_address(e.address, e.instrument);
     const std::string output =
         witness("timeout 30 sigrok-cli --driver scpi-dmm:conn=tcp-raw/127.0.0.1/" + std::to_string(a.port) + " --samples 2");
-    EXPECT_NE(output.find("12.5"), std::string::npos) << output;
+    const std::size_t at = output.find("P1: ");
+    ASSERT_NE(at, std::string::npos) << output;
+    EXPECT_NEAR(std::stod(output.substr(at + 4)), 12.5, 0.01) << output;
   }
 }
 
