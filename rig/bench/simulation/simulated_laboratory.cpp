@@ -11,11 +11,13 @@ namespace waverig::rig::bench {
 using Kind = LaboratoryServer::Listener::Kind;
 
 SimulatedLaboratory::SimulatedLaboratory(const SimulationSettings& settings, const Laboratory& laboratory,
-                                         VirtualTime* time, std::int64_t start_utime)
+                                         VirtualTime* time, std::int64_t start_utime, const std::string& world)
     : laboratory_(laboratory),
       server_(std::make_unique<LaboratoryServer>(settings, laboratory, time, start_utime)),
-      stop_descriptor_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      thread_([this] { server_->run(stop_, stop_descriptor_); }) {}
+      stop_descriptor_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (!world.empty()) server_->world().restore(world);
+  thread_ = std::thread([this] { server_->run(stop_, stop_descriptor_); });
+}
 
 SimulatedLaboratory::~SimulatedLaboratory() {
   stop_ = true;
@@ -62,11 +64,6 @@ Laboratory SimulatedLaboratory::addressed() const {
 std::string SimulatedLaboratory::snapshot() const {
   const std::lock_guard lock(server_->mutex());
   return server_->world().snapshot();
-}
-
-void SimulatedLaboratory::restore(std::string_view snapshot) {
-  const std::lock_guard lock(server_->mutex());
-  server_->world().restore(snapshot);
 }
 
 UnitTruth SimulatedLaboratory::unit_truth() const {

@@ -22,9 +22,9 @@ class LaboratoryServer;
 
 class SimulatedLaboratory {
  public:
-  // time: nullptr for real time. start_utime: of the world.
+  // time: nullptr for real time. start_utime: of the world. world: a snapshot to go on from, or empty.
   SimulatedLaboratory(const SimulationSettings& settings, const Laboratory& laboratory, VirtualTime* time,
-                      std::int64_t start_utime);
+                      std::int64_t start_utime, const std::string& world = "");
   ~SimulatedLaboratory();
   SimulatedLaboratory(const SimulatedLaboratory&) = delete;
   SimulatedLaboratory& operator=(const SimulatedLaboratory&) = delete;
@@ -39,7 +39,6 @@ class SimulatedLaboratory {
 
   // The physical state, while the laboratory is idle.
   std::string snapshot() const;
-  void restore(std::string_view snapshot);
   UnitTruth unit_truth() const;
   double source_A() const;                   // what the calibrator puts out now
   double chamber_target_degC() const;

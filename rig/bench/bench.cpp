@@ -1,0 +1,89 @@
+#include "rig/bench/bench.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <memory>
+
+#include "lcmtypes/error.h"
+#include "rig/bench/simulation/simulated_laboratory.h"
+
+namespace waverig::rig::bench {
+namespace {
+
+// Only one bench at a time in a directory; the lock goes with the process, however it ends.
+class DirectoryLock {
+ public:
+  explicit DirectoryLock(const std::filesystem::path& directory)
+      : descriptor_(::open((directory / "bench.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+    if (descriptor_ < 0) throw UserError(fmt::format("{}: cannot be written", directory.string()));
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    ::close(descriptor_);
+    throw UserError(fmt::format("{}: another bench is at work there: expected a directory of its own", directory.string()));
+  }
+  ~DirectoryLock() { ::close(descriptor_); }
+  DirectoryLock(const DirectoryLock&) = delete;
+  DirectoryLock& operator=(const DirectoryLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+std::int64_t system_utime() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void check_same(const Sequence& sequence, const RunInfo& info, const BenchOptions& options) {
+  for (const auto& [name, print] : sequence.fingerprints) {
+    const auto found = info.files.find(name);
+    if (found == info.files.end() || found->second != print)
+      throw UserError(fmt::format("{}: it has changed since the run in {} began: expected it unchanged, or a new run", name,
+                                  options.out.string()));
+  }
+  if (info.simulated != options.simulate)
+    throw UserError(fmt::format("{}: the run there is {}: expected --resume {} --simulate", options.out.string(),
+                                info.simulated ? "simulated" : "real", info.simulated ? "with" : "without"));
+  if (sequence.uninterrupted && info.outcome != "running" && !info.outcome.starts_with("done"))
+    throw UserError(fmt::format("{}: the run there ended and was torn down ({}), and its sequence cannot be interrupted: expected a new run",
+                                options.out.string(), info.outcome));
+}
+
+}  // namespace
+
+BenchResult run_bench(const Sequence& given, const BenchOptions& options) {
+  std::filesystem::create_directories(options.out);
+  const DirectoryLock lock(options.out);
+  const std::filesystem::path file = store_file(options.out);
+  const std::int64_t begin = options.simulate ? options.simulated_start_utime : system_utime();
+  RunInfo fresh{given.title, given.procedure, options.version, given.fingerprints, {}, begin, options.simulate, "running"};
+  Store store = options.resume ? Store::open(file) : Store::create(file, fresh);
+  const RunInfo info = store.info();
+  if (options.resume) {
+    check_same(given, info, options);
+    if (info.outcome.starts_with("done")) return {info.outcome, true};
+  }
+
+  const ResumeState state = store.resume_state();
+  Sequence sequence = given;
+  std::unique_ptr<VirtualTime> time;
+  std::unique_ptr<SimulatedLaboratory> laboratory;
+  if (options.simulate) {
+    time = std::make_unique<VirtualTime>(std::max(state.utime, info.started_utime));
+    laboratory = std::make_unique<SimulatedLaboratory>(options.simulation, given.laboratory, time.get(), info.started_utime, state.world);
+    sequence.laboratory = laboratory->addressed();
+  }
+  Reactor reactor(time.get(), options.stop);
+  RunnerHooks hooks;
+  hooks.progress = options.progress;
+  hooks.prompt = options.prompt;
+  hooks.clear_stop = options.clear_stop;
+  if (laboratory) hooks.world_snapshot = [&] { return laboratory->snapshot(); };
+  Runner runner(sequence, reactor, store, std::move(hooks));
+  const std::string outcome = runner.run(options.resume);
+  return {outcome, outcome.starts_with("done")};
+}
+
+}  // namespace waverig::rig::bench
