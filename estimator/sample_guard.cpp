@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kSettledChanges = 20;   // changes seen before a spike can be told from the motion
 constexpr int kStep = 3;              // so many jumps in a row are a step, not a spike
+constexpr double kForgotten = 5;      // intervals after which the last sample says nothing of the next
 constexpr double kForget = 0.02;      // of the usual change, per sample
 
 }  // namespace
@@ -60,7 +61,9 @@ GuardVerdict SampleGuard::check(const ImuSample& s) {
   }
   const double dt_s = started_ ? static_cast<double>(s.utime - last_utime_) * kMicrosecond : 0.0;
   const bool gap = interval_s_ > 0 && dt_s > settings_.gap_ratio * interval_s_;
-  if (started_ && !gap && spike(s)) {
+  if (dt_s > kForgotten * interval_s_) {
+    jumps_ = 0;
+  } else if (started_ && spike(s)) {
     verdict.flags |= flag::kSpike;
     return verdict;
   }

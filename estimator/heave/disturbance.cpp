@@ -8,11 +8,17 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kCorrelation_s = 1.0;         // of what a tilt error does to the vertical
+constexpr double kCorrelation_s = 0.25;        // of what tilt errors and offsets do to the vertical
 constexpr double kSaturatedNoise_m2ps3 = 1.0;  // several m/s^2 for tenths of a second
 constexpr double kSlowestSea_radps = 0.2;
 
 double square(double x) { return x * x; }
+
+double offset_mps2(const Motion& motion, const SensorKnowledge& sensor) {
+  return std::max(
+      std::hypot(sensor.accel_bias_sigma_mps2, sensor.accel_misalignment_sigma_rad * sensor.gravity_mps2),
+      std::abs(motion.excess_mps2));
+}
 
 }  // namespace
 
@@ -30,12 +36,24 @@ double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, dou
   return kCorrelation_s * noise + (flags & flag::kSaturation ? kSaturatedNoise_m2ps3 : 0.0);
 }
 
+double turned_offset_m2ps3(const AttitudeSample& attitude, const Motion& motion,
+                           const SensorKnowledge& sensor) {
+  const Vector3d down_B = attitude.q_NB.conjugate() * Vector3d::UnitZ();
+  return kCorrelation_s * square(offset_mps2(motion, sensor)) * (down_B - motion.down_B).squaredNorm();
+}
+
+void Motion::follow(const AttitudeSample& attitude, const Vector3d& f_B, double gravity_mps2, double share) {
+  const Vector3d now_B = attitude.q_NB.conjugate() * Vector3d::UnitZ();
+  down_B += share * (now_B - down_B);
+  leaning_variance_rad2 += share * ((now_B - down_B).squaredNorm() - leaning_variance_rad2);
+  tilt_variance_rad2 += share * (square(attitude.tilt_sigma_rad) - tilt_variance_rad2);
+  excess_mps2 += share * (f_B.norm() - gravity_mps2 - excess_mps2);
+}
+
 double systematic_variance_m2(const SeaModel& sea, const Motion& motion, const SensorKnowledge& s) {
-  const double per_lean =
-      std::hypot(s.accel_bias_sigma_mps2, s.accel_misalignment_sigma_rad * s.gravity_mps2);
   const double w2 = square(std::max(sea.mean_frequency_radps, kSlowestSea_radps));
   return sea.heave_variance_m2() * (square(s.accel_scale_sigma) + motion.tilt_variance_rad2) +
-         motion.leaning_variance_rad2 * square(per_lean / w2);
+         motion.leaning_variance_rad2 * square(offset_mps2(motion, s) / w2);
 }
 
 }  // namespace waverig::estimator

@@ -8,15 +8,34 @@ namespace waverig::estimator {
 
 AttitudeSettings attitude_settings(const SensorKnowledge& sensor);
 
-// Two-sided density of white vertical acceleration, m^2/s^3, by which this sample is worse than the sensor's
-// noise: a tilt error of the stated size lets in horizontal acceleration to first and gravity to second
+// How the body moves and what its sensor is worth, followed sample by sample.
+struct Motion {
+  double tilt_variance_rad2 = 0;       // of the attitude's error
+  double leaning_variance_rad2 = 0;    // of the body itself, both axes, about its mean
+  Vector3d down_B = Vector3d::Zero();  // mean direction of the plumb line
+  double excess_mps2 = 0;              // mean of |f| - g: what the calibration can be seen to leave
+
+  // share: of this sample in the fading mean, 1 at first.
+  void follow(const AttitudeSample& attitude, const Vector3d& f_B, double gravity_mps2, double share);
+};
+
+// Two-sided densities of white vertical acceleration, m^2/s^3, by which a sample is worse than the sensor's
+// noise. A tilt error of the stated size lets in horizontal acceleration to first and gravity to second
 // order; a saturated sample says little.
 double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, double gravity_mps2);
+// An offset is turned over as the body leans away from its mean. For as long as no record shows the noise
+// that makes.
+double turned_offset_m2ps3(const AttitudeSample& attitude, const Motion& motion,
+                           const SensorKnowledge& sensor);
 
-// How the body has moved, for the part of the uncertainty that is in proportion to it.
-struct Motion {
-  double tilt_variance_rad2 = 0;     // of the attitude's error
-  double leaning_variance_rad2 = 0;  // of the body itself, both axes
+struct MeanDisturbance {
+  double sum_m2ps3 = 0;
+  int count = 0;
+  void add(double density_m2ps3) {
+    sum_m2ps3 += density_m2ps3;
+    ++count;
+  }
+  double mean() const { return count > 0 ? sum_m2ps3 / count : 0.0; }
 };
 
 // Variance of heave by calibration and attitude: scale; tilt error times horizontal path, which is about as

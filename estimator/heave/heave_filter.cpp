@@ -11,7 +11,9 @@ constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25,
                  kBiasVariance_m2ps4 = 0.1;        // nothing known
 constexpr double kMeasurementVariance_m2 = 1e-10;  // the path is exact; this keeps the algebra regular
 constexpr double kSurprising = 9;                  // innovation squared over its variance
-constexpr double kCalmDown = 0.98;                 // a node
+constexpr double kExpected = 3;                    // what it is then taken to be
+constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
+constexpr double kCalmDown = 0.98;  // a node
 
 Eigen::Matrix3d drift_transition() {
   Eigen::Matrix3d F;
@@ -39,10 +41,10 @@ void HeaveFilter::set_model(const SeaModel& model) {
   surprise_ = 1;
 }
 
-void HeaveFilter::step(const PathIncrement& increment, double extra_noise_m2ps3) {
+void HeaveFilter::step(const PathIncrement& increment, double disturbance_m2ps3) {
   path_m_ += kDt * (speed_mps_ - kDt * bias_mps2_ / 2) + increment.path_m;
   speed_mps_ += increment.speed_mps - kDt * bias_mps2_;
-  predict(model_.accel_noise_m2ps3 + extra_noise_m2ps3);
+  predict(std::max(model_.accel_noise_m2ps3, disturbance_m2ps3));
   update();
 }
 
@@ -87,18 +89,25 @@ void HeaveFilter::predict(double noise_m2ps3) {
 void HeaveFilter::update() {
   const int n = model_.order();
   const double innovation = path_m_ - z_[0];
-  const Eigen::VectorXd PH = P_.col(0) + P_.col(n);
-  const double S = PH[0] + PH[n] + kMeasurementVariance_m2;
+  Eigen::VectorXd PH = P_.col(0) + P_.col(n);
+  double S = PH[0] + PH[n] + kMeasurementVariance_m2;
+  // A sea that rises faster than the model is learned anew: believe the motion, and leave the drift as it is.
+  const double ratio = innovation * innovation / S;
+  if (ratio > kSurprising) {
+    const double more = S * (ratio / kExpected - 1);
+    P_(0, 0) += more;
+    PH[0] += more;
+    S += more;
+    surprise_ = std::min(surprise_ * std::min(ratio / kExpected, kFastestRise), kLargestSurprise);
+  } else {
+    surprise_ = 1 + kCalmDown * (surprise_ - 1);
+  }
   const Eigen::VectorXd gain = PH / S;
   z_ += innovation * gain.head(n);
   path_m_ -= innovation * gain[n];
   speed_mps_ -= innovation * gain[n + 1];
   bias_mps2_ += innovation * gain[n + 2];
   P_.noalias() -= gain * PH.transpose();
-  // A sea that grows faster than the model is learned anew: believe the motion first.
-  const double ratio = innovation * innovation / S;
-  surprise_ = ratio > kSurprising ? surprise_ * std::min(ratio / 3, 10.0) : 1 + kCalmDown * (surprise_ - 1);
-  surprise_ = std::min(surprise_, 1e6);
 }
 
 double HeaveFilter::variance_m2(double since_s) const {

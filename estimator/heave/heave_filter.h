@@ -17,9 +17,10 @@ class HeaveFilter {
   explicit HeaveFilter(const SeaModel& model);
   void set_model(const SeaModel& model);  // of the same order
 
-  // One node interval's increment. extra_noise_m2ps3: two-sided density on top of the model's, from what the
-  // filter cannot know (attitude not settled, saturated samples).
-  void step(const PathIncrement& increment, double extra_noise_m2ps3);
+  // One node interval's increment. disturbance_m2ps3: two-sided density of the acceleration's noise where
+  // that is known to be more than the model's, which is an average (attitude not settled, saturated samples;
+  // disturbance.h).
+  void step(const PathIncrement& increment, double disturbance_m2ps3);
   // Node intervals without samples: the sea runs on by its model, path and speed are lost.
   void skip(int intervals);
 
@@ -35,6 +36,7 @@ class HeaveFilter {
   // Heave at the node `lag` intervals ago, by all measurements since. lag < order.
   double lagged_heave_m(int lag) const { return z_[lag]; }
   double lagged_variance_m2(int lag) const { return P_(lag, lag); }
+  bool surprised() const { return surprise_ > 10; }  // the model has become too small for the motion
   int order() const { return model_.order(); }
   double bias_mps2() const { return bias_mps2_; }
 

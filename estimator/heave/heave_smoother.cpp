@@ -76,7 +76,7 @@ Eigen::Matrix<double, 3, 6> drift_step() {
 }  // namespace
 
 std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments, const SeaModel& model,
-                                       std::span<const double> extra_noise_m2ps3) {
+                                       std::span<const double> disturbance_m2ps3) {
   const auto nodes = static_cast<Eigen::Index>(increments.size()) + 1;
   const Path path = integrate(increments);
   const Predictors predictors = levinson(model.autocovariance_m2);
@@ -103,9 +103,11 @@ std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments
   // The drift's steps.
   const Eigen::Matrix<double, 3, 6> G = drift_step();
   for (Eigen::Index k = 0; k + 1 < nodes; ++k) {
-    const double extra = extra_noise_m2ps3.empty() ? 0.0 : extra_noise_m2ps3[static_cast<std::size_t>(k)];
+    const double disturbance =
+        disturbance_m2ps3.empty() ? 0.0 : disturbance_m2ps3[static_cast<std::size_t>(k)];
     const Eigen::Matrix<double, 6, 6> W =
-        G.transpose() * drift_information(model.accel_noise_m2ps3 + extra, model.bias_walk_m2ps5) * G;
+        G.transpose() *
+        drift_information(std::max(model.accel_noise_m2ps3, disturbance), model.bias_walk_m2ps5) * G;
     for (Eigen::Index i = 0; i < 6; ++i)
       for (Eigen::Index j = 0; j <= i; ++j) A.at(3 * k + i, 3 * k + j) += W(i, j);
   }

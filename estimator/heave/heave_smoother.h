@@ -25,9 +25,9 @@ struct SmoothedNode {
   double variance_m2 = 0;  // of heave
 };
 
-// Nodes 0 … n for n increments; extra_noise_m2ps3 is empty or one value an increment (as in
+// Nodes 0 … n for n increments; disturbance_m2ps3 is empty or one value an increment (as in
 // HeaveFilter::step).
 std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments, const SeaModel& model,
-                                       std::span<const double> extra_noise_m2ps3 = {});
+                                       std::span<const double> disturbance_m2ps3 = {});
 
 }  // namespace waverig::estimator

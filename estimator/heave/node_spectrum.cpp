@@ -9,9 +9,11 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kStandsOut = 6;        // times the noise: there is sea
-constexpr double kLowestSea_hz = 0.02;  // longer waves are no wind sea nor swell
-constexpr double kQuiet_hz = 0.12;      // somewhere below it there is no sea
+constexpr double kStandsOut = 6;         // times the noise: there is sea
+constexpr double kSeesNoise_hz = 0.025;  // blocks of 100 s
+constexpr double kLowestSea_hz = 0.02;   // longer waves are no wind sea nor swell
+constexpr double kLeastNoise = 0.05;     // of what was assumed
+constexpr double kQuiet_hz = 0.12;       // somewhere below it there is no sea
 
 }  // namespace
 
@@ -60,7 +62,8 @@ const Eigen::VectorXd& Periodogram::of(std::span<const double> values, double dt
   return density_;
 }
 
-SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, double nominal_noise_m2ps3) {
+SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, double assumed_noise_m2ps3,
+                                 double lowest_hz) {
   const Eigen::Index bins = density.size();
   const double step = std::numbers::pi / static_cast<double>(bins - 1),
                df_hz = step / (2 * std::numbers::pi * dt_s);
@@ -73,17 +76,22 @@ SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, do
     level[i] = raw.segment(a, b - a + 1).mean();
   }
   const auto bin_of = [&](double f_hz) {
-    return std::clamp<Eigen::Index>(std::lround(f_hz / df_hz), 3, bins - 2);
+    return std::clamp<Eigen::Index>(std::lround(f_hz / df_hz), 2, bins - 2);
   };
-  const double quiet =
-      std::max(level.segment(2, bin_of(kQuiet_hz) - 1).minCoeff(), 1e-3 * nominal_noise_m2ps3);
+  const Eigen::Index resolved = bin_of(lowest_hz), quiet_end = bin_of(kQuiet_hz);
+  const bool sees_noise = lowest_hz < kSeesNoise_hz;
+  const double least = kLeastNoise * assumed_noise_m2ps3;
+  const double quiet = sees_noise ? std::max(level.segment(resolved, quiet_end - resolved).minCoeff(), least)
+                                  : assumed_noise_m2ps3;
   const auto stands_out = [&](Eigen::Index i) { return level[i] > kStandsOut * quiet; };
-  Eigen::Index first = bin_of(kLowestSea_hz);
+  Eigen::Index first = std::max(bin_of(kLowestSea_hz), resolved + 1);
   while (first < bins - 1 && !(stands_out(first) && stands_out(first + 1))) ++first;
 
   SeaAndNoise split;
-  split.first_bin = std::max<Eigen::Index>(first - 1, 3);
-  split.noise_m2ps3 = std::max(raw.segment(2, split.first_bin - 2).mean(), 0.05 * nominal_noise_m2ps3);
+  split.first_bin = std::max(first - 1, resolved);
+  split.noise_m2ps3 = assumed_noise_m2ps3;
+  if (sees_noise && resolved < split.first_bin)
+    split.noise_m2ps3 = std::max(raw.segment(resolved, split.first_bin - resolved).mean(), least);
   split.heave_density_m2s.setZero(bins);
   for (Eigen::Index i = split.first_bin; i < bins; ++i)
     split.heave_density_m2s[i] = std::max(density[i] - split.noise_m2ps3 * noise[i], 0.0) /

@@ -45,8 +45,10 @@ struct SeaAndNoise {
   Eigen::Index first_bin = 0;         // of the sea
 };
 
-// q is found where there is no sea: below the lowest frequency whose power stands out. nominal_noise: of the
-// data sheet.
-SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, double nominal_noise_m2ps3);
+// q is found where there is no sea: below the lowest frequency whose power stands out. Below lowest_hz the
+// blocks resolve nothing and the sea is left at zero; where that reaches far into the frequencies of waves,
+// nothing is seen of q either, and assumed_noise is taken.
+SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, double assumed_noise_m2ps3,
+                                 double lowest_hz);
 
 }  // namespace waverig::estimator

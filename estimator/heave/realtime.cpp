@@ -45,9 +45,11 @@ void Realtime::add(const ImuSample& sample, Output& output) {
   }
   const AttitudeSample& attitude = attitude_.update(sample);
   const double a_up = -attitude.a_N.z();
-  track_motion(attitude);
-  disturbance_m2ps3_ =
-      std::max(disturbance_m2ps3_, disturbance_m2ps3(attitude, verdict.flags, settings_.sensor.gravity_mps2));
+  const double share =
+      std::max(1.0 / static_cast<double>(++samples_), guard_.usual_interval_s() / kMotionMemory_s);
+  motion_.follow(attitude, sample.f_B, settings_.sensor.gravity_mps2, share);
+  disturbance_.add(disturbance_m2ps3(attitude, verdict.flags, settings_.sensor.gravity_mps2) +
+                   turned_offset_m2ps3(attitude, motion_, settings_.sensor));
   Held held;
   held.sample.flags = verdict.flags | pending_flags_;
   pending_flags_ = 0;
@@ -84,25 +86,19 @@ void Realtime::restart(const ImuSample& sample, double a_up_mps2, Output& output
     identifier_.gap();
   }
   integrator_.start(sample.utime, a_up_mps2);
-  disturbance_m2ps3_ = 0;
+  disturbance_ = {};
   started_ = true;
 }
 
 void Realtime::node(const PathIncrement& increment) {
-  filter_.step(increment, disturbance_m2ps3_);
-  disturbance_m2ps3_ = 0;
+  filter_.step(increment, disturbance_.mean());
+  disturbance_ = {};
+  if (filter_.surprised() && identifier_.age() > kSettlingNodes / 2) identifier_.forget();
   if (identifier_.add(increment)) filter_.set_model(identifier_.model());
   ++nodes_;
   ++settled_nodes_;
   intervals_.push_back(increment);
   if (intervals_.size() > static_cast<std::size_t>(filter_.order())) intervals_.pop_front();
-}
-
-void Realtime::track_motion(const AttitudeSample& attitude) {
-  const double share = std::min(1.0, guard_.usual_interval_s() / kMotionMemory_s);
-  const Vector3d down_B = attitude.q_NB.conjugate() * Vector3d::UnitZ();
-  motion_.leaning_variance_rad2 += share * (down_B.head<2>().squaredNorm() - motion_.leaning_variance_rad2);
-  motion_.tilt_variance_rad2 += share * (square(attitude.tilt_sigma_rad) - motion_.tilt_variance_rad2);
 }
 
 void Realtime::estimate(const Held& held, HeaveSample& out) const {

@@ -35,7 +35,6 @@ class Realtime : public Method {
   void node(const PathIncrement& increment);
   void estimate(const Held& held, HeaveSample& sample) const;
   void release(std::int64_t until_utime, Output& output);
-  void track_motion(const AttitudeSample& attitude);
 
   MethodSettings settings_;
   SampleGuard guard_;
@@ -46,9 +45,9 @@ class Realtime : public Method {
   WaveCounter counter_;
   std::deque<Held> held_;
   std::deque<PathIncrement> intervals_;  // the newest ones, as many as the lag needs; newest last
-  std::int64_t nodes_ = 0, settled_nodes_ = 0;
+  std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
-  double disturbance_m2ps3_ = 0;  // worst since the last node
+  MeanDisturbance disturbance_;  // since the last node
   Motion motion_;
   bool started_ = false;
 };

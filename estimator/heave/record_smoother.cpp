@@ -21,7 +21,7 @@ double square(double x) { return x * x; }
 struct Piece {
   std::size_t begin = 0, end = 0;  // samples
   std::vector<PathIncrement> increments;
-  std::vector<double> disturbance_m2ps3;  // worst in each interval
+  std::vector<double> disturbance_m2ps3;  // mean in each interval
   std::vector<PathIncrement> partial;     // one a sample, from the node before it
   std::vector<double> since_node_s;
   std::vector<std::size_t> node;  // that node's number
@@ -31,18 +31,18 @@ Piece integrate(const Record& record, const std::vector<AttitudeSample>& attitud
                 std::size_t end, double gravity_mps2) {
   Piece piece{begin, end, {}, {}, {}, {}, {}};
   PathIntegrator integrator(kNodeInterval_s);
-  double worst = 0;
+  MeanDisturbance disturbance;
   for (std::size_t i = begin; i < end; ++i) {
     const ImuSample& sample = record.samples()[i];
     const double a_up = -attitude[i].a_N.z();
-    worst = std::max(worst, disturbance_m2ps3(attitude[i], sample.flags, gravity_mps2));
+    disturbance.add(disturbance_m2ps3(attitude[i], sample.flags, gravity_mps2));
     if (i == begin) {
       integrator.start(sample.utime, a_up);
     } else {
       integrator.add(sample.utime, a_up, [&](std::int64_t, const PathIncrement& whole) {
         piece.increments.push_back(whole);
-        piece.disturbance_m2ps3.push_back(worst);
-        worst = 0;
+        piece.disturbance_m2ps3.push_back(disturbance.mean());
+        disturbance = {};
       });
     }
     piece.partial.push_back(integrator.partial());
@@ -114,18 +114,15 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
   const AttitudeSettings settings = attitude_settings(sensor);
   SmoothedRecord smoothed;
   smoothed.attitude = smooth_attitude(samples, settings);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    smoothed.motion.follow(smoothed.attitude[i], samples[i].f_B, sensor.gravity_mps2,
+                           1.0 / static_cast<double>(i + 1));
   std::vector<Piece> pieces;
   for (std::size_t p = 0; p < record.pieces().size(); ++p) {
     const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : samples.size();
     pieces.push_back(integrate(record, smoothed.attitude, record.pieces()[p], end, sensor.gravity_mps2));
   }
   smoothed.sea = identify(pieces, settings);
-  for (const AttitudeSample& a : smoothed.attitude) {
-    const Vector3d down_B = a.q_NB.conjugate() * Vector3d::UnitZ();
-    smoothed.motion.leaning_variance_rad2 +=
-        down_B.head<2>().squaredNorm() / static_cast<double>(samples.size());
-    smoothed.motion.tilt_variance_rad2 += square(a.tilt_sigma_rad) / static_cast<double>(samples.size());
-  }
   smoothed.heave.resize(samples.size());
   for (const Piece& piece : pieces)
     interpolate(piece, smooth_heave(piece.increments, smoothed.sea, piece.disturbance_m2ps3),

@@ -1,20 +1,24 @@
 #include "estimator/heave/sea_identifier.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace waverig::estimator {
 namespace {
 
 constexpr double kDt = kNodeInterval_s;
-constexpr std::size_t kShortest = 48;  // nodes before the first periodogram: 24 s
-constexpr double kLeastSea = 1e-4;     // of the unknown sea: what a calm may still become
+constexpr int kShortest = 24;       // nodes before the first periodogram: 12 s
+constexpr int kFirstSteps = 8;      // nodes between the first ones
+constexpr int kKept = 8;            // of the old sea's nodes, which saw the new one begin
+constexpr double kResolved = 2.5;   // cycles a block: what a Hann window keeps apart from the mean
+constexpr double kLeastSea = 1e-4;  // of the unknown sea: what a calm may still become
 
 }  // namespace
 
 SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
     : settings_(settings),
       periodogram_(settings.block),
-      until_next_(settings.every),
+      until_next_(kShortest),
       density_(Eigen::VectorXd::Zero(settings.block / 2 + 1)),
       model_(unknown_sea(settings.order, settings.accel_noise_m2ps3)) {
   newest_.reserve(static_cast<std::size_t>(2 * settings.block));
@@ -25,14 +29,22 @@ void SeaIdentifier::gap() {
   newest_.clear();
 }
 
+void SeaIdentifier::forget() {
+  if (std::ssize(newest_) > kKept) newest_.erase(newest_.begin(), newest_.end() - kKept);
+  weight_ = 0;
+  age_ = 0;
+  until_next_ = kShortest - kKept;
+}
+
 bool SeaIdentifier::add(const PathIncrement& increment) {
   if (has_last_) newest_.push_back(second_difference_m(last_, increment, kDt));
   last_ = increment;
   has_last_ = true;
-  if (--until_next_ > 0 || newest_.size() < kShortest) return false;
-  until_next_ = settings_.every;
+  ++age_;
+  if (--until_next_ > 0 || std::ssize(newest_) < kShortest) return false;
   const auto block = static_cast<std::ptrdiff_t>(settings_.block);
   if (std::ssize(newest_) > block) newest_.erase(newest_.begin(), newest_.end() - block);
+  until_next_ = std::clamp(static_cast<int>(newest_.size()) / 4, kFirstSteps, settings_.every);
   periodogram();
   identify();
   return true;
@@ -47,14 +59,28 @@ void SeaIdentifier::periodogram() {
 }
 
 void SeaIdentifier::identify() {
-  const SeaAndNoise split = split_sea_from_noise(density_, kDt, settings_.accel_noise_m2ps3);
-  model_ = model_of_density(split.heave_density_m2s, 1 / (kDt * settings_.block), settings_.order);
+  const double df = 1 / (kDt * settings_.block);
+  const double lowest_hz = kResolved / (kDt * static_cast<double>(newest_.size()));
+  SeaAndNoise split = split_sea_from_noise(density_, kDt, model_.accel_noise_m2ps3, lowest_hz);
+  // What is too slow to be resolved yet is taken for the slow part of an unknown sea, in proportion to the
+  // rest.
+  Eigen::VectorXd& sea = split.heave_density_m2s;
+  double seen = 0, expected = 0;
+  const auto slow = static_cast<Eigen::Index>(lowest_hz / df);
+  for (Eigen::Index i = slow + 1; i < sea.size(); ++i) {
+    seen += sea[i];
+    expected += unknown_sea_density_m2s(df * static_cast<double>(i));
+  }
+  for (Eigen::Index i = 1; i <= slow; ++i)
+    sea[i] = seen / expected * unknown_sea_density_m2s(df * static_cast<double>(i));
+  const double noise_m2ps3 = split.noise_m2ps3;
+  model_ = model_of_density(sea, df, settings_.order);
   if (model_.heave_variance_m2() < kLeastSea * kUnknownSea_m2) {  // calm: whatever comes, comes from anywhere
-    model_ = unknown_sea(settings_.order, split.noise_m2ps3);
+    model_ = unknown_sea(settings_.order, noise_m2ps3);
     model_.autocovariance_m2 *= kLeastSea;
     model_.innovation_m2 *= kLeastSea;
   }
-  model_.set_noise(split.noise_m2ps3);
+  model_.set_noise(noise_m2ps3);
 }
 
 }  // namespace waverig::estimator

@@ -24,7 +24,9 @@ class SeaIdentifier {
 
   // One node interval. True when there is a new model.
   bool add(const PathIncrement& increment);
-  void gap();  // the next increment does not follow on the last
+  void gap();                       // the next increment does not follow on the last
+  void forget();                    // the sea is another one from about now on
+  int age() const { return age_; }  // nodes since the start, or since it forgot
   const SeaModel& model() const { return model_; }
 
  private:
@@ -34,7 +36,7 @@ class SeaIdentifier {
   SeaIdentifierSettings settings_;
   Periodogram periodogram_;
   std::vector<double> newest_;  // second differences, oldest first
-  int until_next_ = 0;
+  int until_next_ = 0, age_ = 0;
   PathIncrement last_;
   bool has_last_ = false;
   Eigen::VectorXd density_;  // of the second differences, two-sided

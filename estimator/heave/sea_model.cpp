@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace waverig::estimator {
 namespace {
@@ -43,8 +44,13 @@ SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, int orde
   double m2 = 0;
   for (Eigen::Index i = 0; i <= n; ++i) {
     const double weight = (i == 0 || i == n ? 1.0 : 2.0) * df_hz * density[i];
-    const double step = std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
-    for (int j = 0; j <= order; ++j) model.autocovariance_m2[j] += weight * std::cos(step * j);
+    if (weight == 0) continue;
+    const double cos1 = std::cos(std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+    double before = cos1, now = 1;  // cos((j - 1) x), cos(j x), by Chebyshev's recurrence
+    for (int j = 0; j <= order; ++j) {
+      model.autocovariance_m2[j] += weight * now;
+      before = std::exchange(now, 2 * cos1 * now - before);
+    }
     m2 += weight * std::pow(2 * std::numbers::pi * df_hz * static_cast<double>(i), 2);
   }
   model.mean_frequency_radps =
@@ -56,15 +62,17 @@ SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, int orde
   return model;
 }
 
+// S(f) ~ f^-5 exp(-5/4 (fp/f)^4), whose integral is 1 / (5 fp^4).
+double unknown_sea_density_m2s(double f_hz) {
+  const double x4 = std::pow(kUnknownPeak_hz / f_hz, 4);
+  return kUnknownSea_m2 / 2 * 5 * x4 / f_hz * std::exp(-1.25 * x4);
+}
+
 SeaModel unknown_sea(int order, double accel_noise_m2ps3) {
   constexpr int kBins = 512;
   const double df = 0.5 / kNodeInterval_s / kBins;
   Eigen::VectorXd density = Eigen::VectorXd::Zero(kBins + 1);
-  for (int i = 1; i <= kBins; ++i) {
-    const double x = kUnknownPeak_hz / (df * i);
-    density[i] = std::pow(x, 5) * std::exp(-1.25 * std::pow(x, 4));
-  }
-  density *= kUnknownSea_m2 / (2 * df * density.sum());
+  for (int i = 1; i <= kBins; ++i) density[i] = unknown_sea_density_m2s(df * i);
   SeaModel model = model_of_density(density, df, order);
   model.set_noise(accel_noise_m2ps3);
   return model;

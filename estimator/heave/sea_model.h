@@ -37,10 +37,9 @@ Predictors levinson(const Eigen::VectorXd& autocovariance);
 // where n * df is the nodes' Nyquist frequency).
 SeaModel model_of_density(const Eigen::VectorXd& density_m2s, double df_hz, int order);
 
-inline constexpr double kUnknownSea_m2 = 0.25;  // variance of a sea of Hs 2 m
-
-// Before anything is known: the steepest sea there can be, Phillips' tail down to waves of 14 s
-// (Pierson-Moskowitz).
+// Before anything is known: a fully grown sea (Pierson-Moskowitz) with waves of up to 14 s, and of Hs 2 m.
+inline constexpr double kUnknownSea_m2 = 0.25;  // its variance
+double unknown_sea_density_m2s(double f_hz);    // two-sided
 SeaModel unknown_sea(int order, double accel_noise_m2ps3);
 
 }  // namespace waverig::estimator

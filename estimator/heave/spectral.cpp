@@ -174,7 +174,8 @@ SeaState sea_state(const Record& record, const SmoothedRecord& smoothed, const S
   if (average.blocks == 0) return sea;
   const double nominal =
       square(attitude_settings(sensor).accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
-  set_moments(split_sea_from_noise(average.density, interval_s, nominal), interval_s * block, average, sea);
+  set_moments(split_sea_from_noise(average.density, interval_s, nominal, 2.5 / (interval_s * block)),
+              interval_s * block, average, sea);
   sea.hm0_sigma_m = hm0_sigma(smoothed, sensor, sea);
   return sea;
 }
