@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "estimator/evaluation/heave_csv.h"
+#include "estimator/evaluation/heave_spectrum.h"
+#include "estimator/evaluation/netcdf_file.h"
 #include "estimator/evaluation/sample_csv.h"
 #include "estimator/evaluation/summary.h"
 #include "estimator/evaluation/waves_csv.h"
@@ -21,6 +23,7 @@
 #include "lcmtypes/event_log.h"
 #include "lcmtypes/flags.h"
 #include "rig/cli/commands.h"
+#include "rig/version.h"
 
 namespace waverig::cli {
 namespace {
@@ -30,6 +33,7 @@ using estimator::ImuSample;
 
 struct EstimateArguments {
   std::string input, out, method;
+  bool netcdf = false;
   double rest_s = 0;
   double gravity_mps2 = kStandardGravity;
 };
@@ -105,8 +109,9 @@ class Collector : public estimator::Output {
   explicit Collector(const fs::path& heave_csv) : writer_(heave_csv) {}
   void heave(const estimator::HeaveSample& sample) override {
     writer_.write(sample);
-    utime_.push_back(sample.utime);
-    heave_m_.push_back(sample.heave_m);
+    series_.utime.push_back(sample.utime);
+    series_.heave_m.push_back(sample.heave_m);
+    series_.heave_sigma_m.push_back(sample.heave_sigma_m);
     flags_ |= sample.flags & ~flag::kSettling & ~flag::kNoMagnetometer;
   }
   void wave(const estimator::Wave& wave) override { waves_.push_back(wave); }
@@ -115,16 +120,17 @@ class Collector : public estimator::Output {
   void close() { writer_.close(); }
   // The method's own waves; of a method that gives none, the zero-up-crossing waves of its heave.
   std::vector<estimator::Wave> waves() const {
-    if (!waves_.empty() || utime_.empty()) return waves_;
-    return evaluation::waves_of(evaluation::count_waves(utime_, heave_m_, {.interpolate_extremes = true}));
+    if (!waves_.empty()) return waves_;
+    return evaluation::waves_of(
+        evaluation::count_waves(series_.utime, series_.heave_m, {.interpolate_extremes = true}));
   }
+  const evaluation::HeaveSeries& heave_series() const { return series_; }
   const std::vector<estimator::SeaState>& seas() const { return seas_; }
   std::int32_t flags() const { return flags_; }
 
  private:
   evaluation::HeaveCsvWriter writer_;
-  std::vector<std::int64_t> utime_;
-  std::vector<double> heave_m_;
+  evaluation::HeaveSeries series_;
   std::vector<estimator::Wave> waves_;
   std::vector<estimator::SeaState> seas_;
   std::int32_t flags_ = 0;
@@ -195,6 +201,13 @@ int estimate(const EstimateArguments& arguments) {
   seas.insert(seas.end(), collector.seas().begin(), collector.seas().end());
   evaluation::take_sea(summary, seas);
   collector.close();
+  if (arguments.netcdf) {
+    const evaluation::HeaveSeries& heave = collector.heave_series();
+    const evaluation::HeaveSpectrum spectrum = evaluation::spectrum_of(heave.utime, heave.heave_m);
+    evaluation::write_netcdf(
+        out / "record.nc",
+        {heave, waves, spectrum, summary, std::string("waverig ") + kVersion, "Heave of " + arguments.input});
+  }
   evaluation::write_waves_csv(out / "waves.csv", waves);
   evaluation::write_summary(out / "summary.json", summary);
   fmt::print("{}", evaluation::to_json(summary));
@@ -222,6 +235,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
   command->add_option("--gravity", arguments->gravity_mps2, "Local gravity, m/s^2")
       ->check(CLI::Range(9.7, 9.9))
       ->capture_default_str();
+  command->add_flag("--netcdf", arguments->netcdf, "Write heave, waves and spectrum as record.nc (CF) too");
   command->footer(
       "The sample CSV has the header utime,ax,ay,az,gx,gy,gz[,mx,my,mz][,temperature]: microseconds, m/s^2, "
       "rad/s;\n"

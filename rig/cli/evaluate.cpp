@@ -11,6 +11,8 @@
 
 #include "estimator/evaluation/heave_against_truth.h"
 #include "estimator/evaluation/heave_csv.h"
+#include "estimator/evaluation/heave_spectrum.h"
+#include "estimator/evaluation/netcdf_file.h"
 #include "estimator/evaluation/results_io.h"
 #include "estimator/evaluation/run_judge.h"
 #include "estimator/evaluation/run_record.h"
@@ -19,6 +21,7 @@
 #include "estimator/evaluation/zero_crossing.h"
 #include "lcmtypes/error.h"
 #include "rig/cli/commands.h"
+#include "rig/version.h"
 
 namespace waverig::cli {
 namespace {
@@ -30,6 +33,7 @@ struct EvaluateArguments {
   std::vector<std::string> others;  // NAME=DIR
   evaluation::AgainstTruthSettings against;
   evaluation::ZeroCrossingSettings waves;
+  bool netcdf = false;
 };
 
 void make_directory(const std::string& out) {
@@ -44,7 +48,10 @@ int evaluate_heave(const EvaluateArguments& arguments) {
     throw UserError("--out is missing; expected a directory for waves.csv and summary.json");
   const evaluation::HeaveSeries heave = evaluation::read_heave_csv(arguments.input);
   const auto counted = evaluation::count_waves(heave.utime, heave.heave_m, arguments.waves);
-  evaluation::Summary summary = evaluation::summary_of("zero-up-crossing", evaluation::waves_of(counted));
+  const auto waves = evaluation::waves_of(counted);
+  const evaluation::HeaveSpectrum spectrum = evaluation::spectrum_of(heave.utime, heave.heave_m);
+  evaluation::Summary summary = evaluation::summary_of("zero-up-crossing", waves);
+  evaluation::take_sea(summary, std::vector{evaluation::sea_of(spectrum)});
   if (!arguments.truth.empty()) {
     const auto comparison =
         evaluation::compare_with_truth(heave, evaluation::read_heave_csv(arguments.truth), arguments.against);
@@ -55,7 +62,11 @@ int evaluate_heave(const EvaluateArguments& arguments) {
   }
   make_directory(arguments.out);
   fs::remove(fs::path(arguments.out) / "summary.json");
-  evaluation::write_waves_csv(fs::path(arguments.out) / "waves.csv", evaluation::waves_of(counted));
+  if (arguments.netcdf)
+    evaluation::write_netcdf(
+        fs::path(arguments.out) / "record.nc",
+        {heave, waves, spectrum, summary, std::string("waverig ") + kVersion, "Heave of " + arguments.input});
+  evaluation::write_waves_csv(fs::path(arguments.out) / "waves.csv", waves);
   evaluation::write_summary(fs::path(arguments.out) / "summary.json", summary);
   fmt::print("{}", evaluation::to_json(summary));
   return 0;
@@ -158,6 +169,7 @@ void add_evaluate(CLI::App& app, Command& chosen) {
       ->add_option("--dead-band-m", arguments->waves.dead_band_m,
                    "A crossing counts once the heave has left this band")
       ->check(CLI::NonNegativeNumber);
+  command->add_flag("--netcdf", arguments->netcdf, "Write heave, waves and spectrum as record.nc (CF) too");
   command->footer(
       "Examples:\n"
       "  waverig evaluate results/table2\n"
