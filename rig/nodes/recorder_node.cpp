@@ -5,24 +5,13 @@
 #include <string_view>
 
 #include "lcmtypes/channels.h"
+#include "rig/nodes/message_head.h"
 
 namespace waverig::rig {
 namespace {
 
-// Every message of waverig begins with its fingerprint and then int64_t utime and int64_t seq, big-endian.
-constexpr std::size_t kUtimeAt = 8, kSeqAt = 16;
-
 // What LCM itself sends whenever a program joins a multicast bus.
 constexpr std::string_view kSelfTest = "LCM_SELF_TEST";
-
-// The int64_t there; 0 where the message is too short.
-std::int64_t number_at(std::size_t place, const void* data, std::size_t size) {
-  if (size < place + 8) return 0;
-  const auto* byte = static_cast<const unsigned char*>(data) + place;
-  std::uint64_t value = 0;
-  for (int i = 0; i < 8; ++i) value = value << 8 | byte[i];
-  return static_cast<std::int64_t>(value);
-}
 
 std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix) { return path += suffix; }
 
@@ -34,10 +23,11 @@ RecorderNode::RecorderNode(Bus& bus, const std::filesystem::path& path)
     counted_.try_emplace(std::string(counted));
   bus.subscribe_raw(".*", [this](std::string_view channel, const void* data, std::size_t size) {
     if (channel == kSelfTest) return;
-    latest_utime_ = std::max(latest_utime_, number_at(kUtimeAt, data, size));
+    const MessageHead head = head_of(data, size);
+    latest_utime_ = std::max(latest_utime_, head.utime);
     writer_.write(latest_utime_, channel, data, size);
     if (const auto counted = counted_.find(channel); counted != counted_.end())
-      counted->second.missing_before(number_at(kSeqAt, data, size));
+      counted->second.missing_before(head.seq);
   });
 }
 
