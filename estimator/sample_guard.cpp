@@ -7,10 +7,10 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr int kSettledChanges = 20;   // changes seen before a spike can be told from the motion
-constexpr int kStep = 3;              // so many jumps in a row are a step, not a spike
-constexpr double kForgotten = 5;      // intervals after which the last sample says nothing of the next
-constexpr double kForget = 0.02;      // of the usual change, per sample
+constexpr int kSettledChanges = 20;  // changes seen before a spike can be told from the motion
+constexpr int kStep = 3;             // so many jumps in a row are a step, not a spike
+constexpr double kForgotten = 5;     // intervals after which the last sample says nothing of the next
+constexpr double kForget = 0.02;     // of the usual change, per sample
 
 }  // namespace
 
@@ -33,9 +33,11 @@ bool SampleGuard::flat(const ImuSample& s) {
 bool SampleGuard::spike(const ImuSample& s) {
   const double change = (s.f_B - last_f_B_).cwiseAbs().maxCoeff();
   const double limit = std::max(settings_.spike_floor_mps2, settings_.spike_ratio * usual_change_mps2_);
-  if (settings_.spike_ratio > 0 && changes_ >= kSettledChanges && change > limit && ++jumps_ < kStep) return true;
-  if (jumps_ < kStep) {   // the change that ends a step says nothing of the usual one
-    usual_change_mps2_ += (changes_ < kSettledChanges ? 1.0 / (changes_ + 1) : kForget) * (change - usual_change_mps2_);
+  if (settings_.spike_ratio > 0 && changes_ >= kSettledChanges && change > limit && ++jumps_ < kStep)
+    return true;
+  if (jumps_ < kStep) {  // the change that ends a step says nothing of the usual one
+    usual_change_mps2_ +=
+        (changes_ < kSettledChanges ? 1.0 / (changes_ + 1) : kForget) * (change - usual_change_mps2_);
     if (changes_ < kSettledChanges) ++changes_;
   }
   jumps_ = 0;

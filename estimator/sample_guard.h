@@ -1,10 +1,10 @@
-// SampleGuard: the one door through which samples enter a method. It lets good samples through in order of time and
-// says of every sample what is wrong with it, in the QARTOD sense (lcmtypes/flags.h).
+// SampleGuard: the one door through which samples enter a method. It lets good samples through in order of
+// time and says of every sample what is wrong with it, in the QARTOD sense (lcmtypes/flags.h).
 //
 //   not finite, or beyond what is plausible       kRange         not usable
-//   repeated or out-of-order time                 kRange         not usable (there is a sample of that time already)
-//   samples missing before this one               kGap           usable; dt_s spans the gap
-//   one sample far off the way of its neighbours  kSpike         not usable (three in a row are a step and pass)
+//   repeated or out-of-order time                 kRange         not usable (there is a sample of that time
+//   already) samples missing before this one               kGap           usable; dt_s spans the gap one
+//   sample far off the way of its neighbours  kSpike         not usable (three in a row are a step and pass)
 //   the same reading for flat_line_s              kFlatLine      not usable until it changes
 //   an axis at its limit                          kSaturation    usable for its time and rate; f_B is wrong
 // Flags that came with the sample stay on it.
@@ -16,27 +16,27 @@
 namespace waverig::estimator {
 
 struct SampleGuardSettings {
-  double accel_limit_mps2 = 0;              // output stage limit of an axis; 0: none
+  double accel_limit_mps2 = 0;  // output stage limit of an axis; 0: none
   double gyro_limit_radps = 0;
-  double accel_plausible_mps2 = 500;        // beyond it: not a reading
+  double accel_plausible_mps2 = 500;  // beyond it: not a reading
   double gyro_plausible_radps = 100;
-  double flat_line_s = 1.0;                 // all three accelerometer axes without the least change; 0: off
-  double spike_ratio = 15;                  // times the usual change from sample to sample; 0: off
-  double spike_floor_mps2 = 1.0;            // a smaller jump is never a spike
-  double gap_ratio = 1.8;                   // times the usual interval
+  double flat_line_s = 1.0;       // all three accelerometer axes without the least change; 0: off
+  double spike_ratio = 15;        // times the usual change from sample to sample; 0: off
+  double spike_floor_mps2 = 1.0;  // a smaller jump is never a spike
+  double gap_ratio = 1.8;         // times the usual interval
 };
 
 struct GuardVerdict {
   bool usable = false;
-  std::int32_t flags = 0;                   // of the sample and of the guard
-  double dt_s = 0;                          // since the last usable sample; 0 for the first
+  std::int32_t flags = 0;  // of the sample and of the guard
+  double dt_s = 0;         // since the last usable sample; 0 for the first
 };
 
 class SampleGuard {
  public:
   explicit SampleGuard(const SampleGuardSettings& settings = {}) : settings_(settings) {}
   GuardVerdict check(const ImuSample& sample);
-  double usual_interval_s() const { return interval_s_; }   // 0 until two samples came
+  double usual_interval_s() const { return interval_s_; }  // 0 until two samples came
 
  private:
   bool in_range(const ImuSample& sample) const;
@@ -46,7 +46,7 @@ class SampleGuard {
 
   SampleGuardSettings settings_;
   bool started_ = false;
-  std::int64_t last_utime_ = 0;             // of the last usable sample
+  std::int64_t last_utime_ = 0;  // of the last usable sample
   Vector3d last_f_B_ = Vector3d::Zero();
   double interval_s_ = 0;
   double usual_change_mps2_ = 0;

@@ -20,15 +20,17 @@ Eigen::Vector4d coefficients(const Quaterniond& q) { return {q.w(), q.x(), q.y()
 }  // namespace
 
 Euler rest_attitude(const Vector3d& f_B, double g) {
-  const double pitch = std::asin(std::clamp(f_B.x() / g, -1.0, 1.0));                                  // eq. (3)
-  const double roll = std::asin(std::clamp(-f_B.y() / std::max(g * std::cos(pitch), 1e-9), -1.0, 1.0));  // eq. (4)
+  const double pitch = std::asin(std::clamp(f_B.x() / g, -1.0, 1.0));  // eq. (3)
+  const double roll =
+      std::asin(std::clamp(-f_B.y() / std::max(g * std::cos(pitch), 1e-9), -1.0, 1.0));  // eq. (4)
   return {roll, pitch, 0};
 }
 
 Vector3d levelled(const Vector3d& f_B, double roll, double pitch) {
   const double y = std::cos(roll) * f_B.y() - std::sin(roll) * f_B.z();
   const double z = std::sin(roll) * f_B.y() + std::cos(roll) * f_B.z();
-  return {std::cos(pitch) * f_B.x() + std::sin(pitch) * z, y, -std::sin(pitch) * f_B.x() + std::cos(pitch) * z};
+  return {std::cos(pitch) * f_B.x() + std::sin(pitch) * z, y,
+          -std::sin(pitch) * f_B.x() + std::cos(pitch) * z};
 }
 
 const Quaterniond& LeeAttitude::update(const Vector3d& f_B, const Vector3d& w_B, double dt_s) {
@@ -38,8 +40,8 @@ const Quaterniond& LeeAttitude::update(const Vector3d& f_B, const Vector3d& w_B,
     q_ = quaternion_of(rest);
     return q_;
   }
-  // Both variances are the data sheet's: white noise of one-sided density d has variance d^2 / (2 dt) per sample and,
-  // integrated, walks by d^2 dt / 2; a quaternion element has a quarter of its angle's variance.
+  // Both variances are the data sheet's: white noise of one-sided density d has variance d^2 / (2 dt) per
+  // sample and, integrated, walks by d^2 dt / 2; a quaternion element has a quarter of its angle's variance.
   const double angle_noise = settings_.accel_noise_mps2_rthz / settings_.gravity_mps2;
   const double R = 0.25 * angle_noise * angle_noise / (2 * dt_s);
   const double Q = 0.25 * settings_.gyro_noise_radps_rthz * settings_.gyro_noise_radps_rthz * dt_s / 2;

@@ -16,8 +16,11 @@ using Matrix5 = Eigen::Matrix<double, 5, 5>;
 constexpr int kMostIterations = 15;
 constexpr double kConverged_rad = 1e-6;
 constexpr double kNode_s = 0.1;
-constexpr double kGiven = 0.8, kDropped = 0.6;  // of a full block: what is good enough to give, what is done with
-constexpr double kMotionCorrelation_s = 3;      // in a block of ten seconds waves count as noise that lasts so long
+constexpr double kGiven = 0.8,
+                 kDropped = 0.6;  // of a full block: what is good enough to give, what is done with
+constexpr double kFixed = 1e6;    // weight of what is not to be estimated, in those of the data
+constexpr double kMotionCorrelation_s =
+    3;  // in a block of ten seconds waves count as noise that lasts so long
 
 // Rotation by a small vector (a few degrees): exact to the fifth power, without trigonometry.
 Quaterniond small_rotation(const Vector3d& phi) {
@@ -107,13 +110,15 @@ bool BlockLeveller::iterate() {
   Matrix5 N = Matrix5::Zero();
   Vector5 b = Vector5::Zero();
   double weights = 0, squares = 0;
-  Matrix3d turned = Matrix3d::Zero();                    // integral of R dt
+  Matrix3d turned = Matrix3d::Zero();  // integral of R dt
+  Vector3d up_B = Vector3d::Zero();    // mean
   Quaterniond q = q_start_;
   for (Node& node : nodes_) {
     node.q_NB = q;
     const Matrix3d R_NB = q.toRotationMatrix();
     const Matrix3d half_turned = 0.5 * node.duration_s * R_NB;
     turned += half_turned;
+    up_B -= R_NB.row(2).transpose();
     if (node.forces > 0) {
       const Vector3d f = node.force_sum / node.forces;
       const Vector3d f_N = R_NB * (f - 0.5 * node.duration_s * bias_B_.cross(f));
@@ -130,14 +135,19 @@ bool BlockLeveller::iterate() {
   }
   if (weights <= 0) return true;
 
-  // The prior of the bias against the block's own horizontal motion, taken as noise; the longer the block, the less
-  // of the waves is left near zero frequency.
+  // The prior of the bias against the block's own horizontal motion, taken as noise; the longer the block,
+  // the less of the waves is left near zero frequency.
   const double variance = std::max(0.5 * squares / weights, 1e-6);
   const double shorter = std::min(1.0, 10 / std::max(duration_s, kNode_s));
   const double prior = variance * kMotionCorrelation_s * shorter * shorter / kNode_s /
                        std::max(settings_.gyro_bias_sigma_radps * settings_.gyro_bias_sigma_radps, 1e-16);
-  N.diagonal().tail<3>().array() += prior;
-  b.tail<3>() -= prior * bias_B_;
+  // The bias about the vertical turns the frame but does not lean it. Left free it would lend a tilting
+  // body's waves a tilt error of their own frequency, to explain their horizontal acceleration away: it stays
+  // as guessed.
+  up_B.normalize();
+  const Matrix3d across = Matrix3d::Identity() - up_B * up_B.transpose();
+  N.bottomRightCorner<3, 3>() += prior * across + kFixed * N.trace() * up_B * up_B.transpose();
+  b.tail<3>() -= prior * across * bias_B_;
   N.diagonal().head<2>().array() += 1e-12 * g * g;
   const Vector5 x = N.ldlt().solve(b);
   if (!x.allFinite()) return true;

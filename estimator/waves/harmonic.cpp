@@ -11,9 +11,9 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kWavesAhead = 5.5;       // a wave is given once so many follow: its frequency is shared by them
-constexpr double kWavesBehind = 11;       // kept for the same reason
-constexpr double kQuiet_s = 100;          // without a wave in sight, so much is kept: a slow one may be beginning
+constexpr double kWavesAhead = 5.5;  // a wave is given once so many follow: its frequency is shared by them
+constexpr double kWavesBehind = 11;  // kept for the same reason
+constexpr double kQuiet_s = 100;     // without a wave in sight, so much is kept: a slow one may be beginning
 
 BlockLevellerSettings leveller_settings(const MethodSettings& settings, const HarmonicSettings& own) {
   BlockLevellerSettings result = own.leveller;
@@ -38,8 +38,8 @@ FittedHeave heave_at(const std::vector<RegularWave>& waves, double t_s, std::siz
   const bool later = t_s >= wave.timing.down_crossing_s;
   const bool has_other = later ? k + 1 < waves.size() && waves[k + 1].follows : k > 0 && wave.follows;
   const RegularWave& other = has_other ? waves[later ? k + 1 : k - 1] : wave;
-  const double span_s = has_other ? std::abs(other.timing.down_crossing_s - wave.timing.down_crossing_s)
-                                  : wave.timing.period_s;
+  const double span_s =
+      has_other ? std::abs(other.timing.down_crossing_s - wave.timing.down_crossing_s) : wave.timing.period_s;
   const double part = (t_s - wave.timing.down_crossing_s) / span_s;
   const double height_m = wave.height_m + std::abs(part) * (other.height_m - wave.height_m);
   result.inside = true;

@@ -6,11 +6,12 @@
 //   4 time       one frequency shared by up to nine neighbours that agree        wave_timing
 //   5 fit        harmonic, offset and drift to the vertical acceleration         wave_fit
 //   6 budget     noise from the residual, the calibration through the geometry   height_budget
-// H = 2 A / w^2 of the fitted acceleration amplitude A. First and last partial waves are left out. Waves found while
-// the period changes carry kSettling, waves that hardly stand out of the noise kBelowNoise.
+// H = 2 A / w^2 of the fitted acceleration amplitude A. First and last partial waves are left out. Waves
+// found while the period changes carry kSettling, waves that hardly stand out of the noise kBelowNoise.
 //
-// heave_m is the fitted wave, its phase running from crossing to crossing; nought with kSettling where there is no
-// wave. Everything comes late: by three quarters of a block and six waves. Memory is bounded by that delay.
+// heave_m is the fitted wave, its phase running from crossing to crossing; nought with kSettling where there
+// is no wave. Everything comes late: by three quarters of a block and six waves. Memory is bounded by that
+// delay.
 #pragma once
 #include <deque>
 #include <vector>
@@ -46,11 +47,11 @@ class Harmonic final : public Method {
   SampleGuard guard_;
   BlockLeveller leveller_;
   WaveSeries series_;
-  std::deque<LevelledSample> levelled_;   // waiting for their heave
-  std::size_t gathered_ = 0;              // of levelled_, already in the series
+  std::deque<LevelledSample> levelled_;  // waiting for their heave
+  std::size_t gathered_ = 0;             // of levelled_, already in the series
   std::int64_t first_utime_ = 0;
   bool started_ = false;
-  double given_until_s_ = -1;             // end of the last wave given
+  double given_until_s_ = -1;  // end of the last wave given
   std::int64_t waves_ = 0;
 };
 

@@ -6,7 +6,7 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr int kParameters = 12;    // E row by row, then b
+constexpr int kParameters = 12;  // E row by row, then b
 constexpr std::size_t kInstants = 40;
 using Vector12 = Eigen::Matrix<double, kParameters, 1>;
 
@@ -30,8 +30,9 @@ struct Projection {
 
 }  // namespace
 
-AmplitudeBudget amplitude_budget(const WaveSeries& series, const WaveFit& fit, const SensorKnowledge& knowledge,
-                                 double mean_up_mps2, double mean_up_sigma_mps2) {
+AmplitudeBudget amplitude_budget(const WaveSeries& series, const WaveFit& fit,
+                                 const SensorKnowledge& knowledge, double mean_up_mps2,
+                                 double mean_up_sigma_mps2) {
   const BinRange range = range_of(series, fit.begin_s, fit.end_s);
   const std::size_t stride = std::max<std::size_t>(1, range.size() / kInstants);
   const double amplitude = fit.amplitude_mps2(), g = knowledge.gravity_mps2;
@@ -68,7 +69,9 @@ AmplitudeBudget amplitude_budget(const WaveSeries& series, const WaveFit& fit, c
   up_B.normalize();
   // Least squares for (in-phase amplitude, mean) of a signal.
   const double det = phase_squares - unit.in_phase * unit.in_phase / n;
-  const auto amplitude_of = [&](const Projection& s) { return (s.in_phase - s.sum * unit.in_phase / n) / det; };
+  const auto amplitude_of = [&](const Projection& s) {
+    return (s.in_phase - s.sum * unit.in_phase / n) / det;
+  };
   const Eigen::Vector2d a_h(amplitude_of(north), amplitude_of(east));
 
   Vector12 sensitivity, level_sensitivity, mean_sensitivity;
@@ -80,7 +83,8 @@ AmplitudeBudget amplitude_budget(const WaveSeries& series, const WaveFit& fit, c
   }
   const Vector12 prior = prior_variances(knowledge);
   const Vector12 gain_numerator = prior.cwiseProduct(mean_sensitivity);
-  const double innovation_variance = mean_sensitivity.dot(gain_numerator) + mean_up_sigma_mps2 * mean_up_sigma_mps2 +
+  const double innovation_variance = mean_sensitivity.dot(gain_numerator) +
+                                     mean_up_sigma_mps2 * mean_up_sigma_mps2 +
                                      knowledge.gravity_sigma_mps2 * knowledge.gravity_sigma_mps2;
   const auto variance_of = [&](const Vector12& h) {
     const double shared = h.dot(gain_numerator);

@@ -8,11 +8,12 @@
 
 namespace waverig::estimator {
 
-Lee2014::Lee2014(const MethodSettings& settings, const Lee2014Settings& own) : settings_(own), attitude_([&] {
-  LeeAttitudeSettings attitude = own.attitude;
-  attitude.gravity_mps2 = settings.sensor.gravity_mps2;
-  return attitude;
-}()) {
+Lee2014::Lee2014(const MethodSettings& settings, const Lee2014Settings& own)
+    : settings_(own), attitude_([&] {
+        LeeAttitudeSettings attitude = own.attitude;
+        attitude.gravity_mps2 = settings.sensor.gravity_mps2;
+        return attitude;
+      }()) {
   settings_.attitude.gravity_mps2 = settings.sensor.gravity_mps2;
 }
 
@@ -40,7 +41,7 @@ void Lee2014::add(const ImuSample& sample, Output& output) {
   output.heave(heave);
 }
 
-void Lee2014::finish(Output&) {}   // the last wave, not closed by a crest, is left out
+void Lee2014::finish(Output&) {}  // the last wave, not closed by a crest, is left out
 
 void Lee2014::track(double up_mps2, double dt) {
   if (!started_) {
@@ -54,7 +55,8 @@ void Lee2014::track(double up_mps2, double dt) {
   P_pa_ += P_va_ * dt + 0.5 * P_aa_ * dt * dt;
   P_va_ += P_aa_ * dt;
   P_aa_ += 0.5 * settings_.jerk_mps3_rthz * settings_.jerk_mps3_rthz * dt;
-  // Correct with the measured acceleration; white noise of one-sided density d has variance d^2 / (2 dt) per sample.
+  // Correct with the measured acceleration; white noise of one-sided density d has variance d^2 / (2 dt) per
+  // sample.
   const double R = 0.5 * settings_.accel_noise_mps2_rthz * settings_.accel_noise_mps2_rthz / dt;
   const double S = P_aa_ + R, residual = up_mps2 - a_mps2_;
   a_mps2_ += P_aa_ / S * residual;
@@ -82,7 +84,8 @@ void Lee2014::look_for_crest(const ImuSample& sample, double dt, std::int32_t fl
   wave_flags_ |= flags;
   const double v = v_mps_ - reference_v_mps_;
 
-  const bool crest = last_v_mps_ > 0 && v <= 0 && (!has_crest_ || since_crest_s_ >= settings_.shortest_period_s);
+  const bool crest =
+      last_v_mps_ > 0 && v <= 0 && (!has_crest_ || since_crest_s_ >= settings_.shortest_period_s);
   if (crest) {
     // The zero lies between the two samples; both waves get the part that is theirs.
     const double after_s = dt * v / (v - last_v_mps_);
@@ -104,12 +107,12 @@ void Lee2014::close_wave(double period_s, std::int32_t flags, Output& output) {
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Vector3d y = Eigen::Vector3d::Zero();
   for (const Point& point : points_) {
-    const Eigen::Vector3d row(std::cos(w * point.t_s), point.t_s, 1.0);   // eq. (11), delta = 0 at the crest
+    const Eigen::Vector3d row(std::cos(w * point.t_s), point.t_s, 1.0);  // eq. (11), delta = 0 at the crest
     N.noalias() += row * row.transpose();
     y += row * point.p_m;
   }
   if (points_.size() < 8) return;
-  const Eigen::Vector3d fit = N.ldlt().solve(y);   // alpha, beta, gamma
+  const Eigen::Vector3d fit = N.ldlt().solve(y);  // alpha, beta, gamma
   Wave wave;
   wave.start_utime = crest_utime_;
   wave.seq = waves_++;

@@ -1,14 +1,17 @@
-// Method "lee2014": Lee, Lee, Heo 2014, eqs (2)-(13), with the corrected levelling rotation. The published baseline.
+// Method "lee2014": Lee, Lee, Heo 2014, eqs (2)-(13), with the corrected levelling rotation. The published
+// baseline.
 //
 //   attitude   LeeAttitude, eqs (2)-(9)
 //   heave      Kalman filter of state (a, v, p), eq (10), acceleration measured
-//   waves      from crest to crest, f_w from the zero velocity at both; P(t) = alpha cos(2 pi f_w t) + beta t + gamma
+//   waves      from crest to crest, f_w from the zero velocity at both; P(t) = alpha cos(2 pi f_w t) + beta t
+//   + gamma
 //              by least squares, eq (11); H = 2 alpha
 //
-// heave_m is the trace of eq. (10) as it is, drift and all (the paper's figure 5); the corrected trace of eq. (13) is
-// alpha cos - alpha over each wave. The paper says nothing of how a zero of the velocity is told while the velocity
-// itself runs away: here a reference line (its offset and velocity) is taken off the trace, and each fitted wave moves
-// the line by its gamma and beta. A lost line, no crest for the longest period, starts anew at the latest sample.
+// heave_m is the trace of eq. (10) as it is, drift and all (the paper's figure 5); the corrected trace of eq.
+// (13) is alpha cos - alpha over each wave. The paper says nothing of how a zero of the velocity is told
+// while the velocity itself runs away: here a reference line (its offset and velocity) is taken off the
+// trace, and each fitted wave moves the line by its gamma and beta. A lost line, no crest for the longest
+// period, starts anew at the latest sample.
 #pragma once
 #include <vector>
 
@@ -34,7 +37,7 @@ class Lee2014 final : public Method {
 
  private:
   struct Point {
-    double t_s, p_m;               // since the crest; referenced height
+    double t_s, p_m;  // since the crest; referenced height
   };
   void track(double up_mps2, double dt_s);
   void look_for_crest(const ImuSample& sample, double dt_s, std::int32_t flags, Output& output);
@@ -45,15 +48,15 @@ class Lee2014 final : public Method {
   SampleGuard guard_;
   LeeAttitude attitude_;
 
-  // Eq. (10): state and the covariances that the gain needs. Those of v and p alone grow without bound (nothing
-  // measures them) and are not kept.
+  // Eq. (10): state and the covariances that the gain needs. Those of v and p alone grow without bound
+  // (nothing measures them) and are not kept.
   double a_mps2_ = 0, v_mps_ = 0, p_m_ = 0;
   double P_aa_ = 0, P_va_ = 0, P_pa_ = 0;
   bool started_ = false;
 
   // The reference line under the trace.
   double reference_v_mps_ = 0, reference_p_m_ = 0;
-  double last_v_mps_ = 0;          // referenced, of the sample before
+  double last_v_mps_ = 0;  // referenced, of the sample before
 
   // The wave in the making.
   bool has_crest_ = false;

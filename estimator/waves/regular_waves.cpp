@@ -13,16 +13,17 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kNeighbours = 4;   // on either side: noise and mean force are told together
-constexpr std::size_t kEvenly = 4;       // waves that share one frequency run evenly
-constexpr double kContradiction = 4;      // standard deviations
+constexpr std::size_t kNeighbours = 4;  // on either side: noise and mean force are told together
+constexpr std::size_t kEvenly = 4;      // waves that share one frequency run evenly
+constexpr double kContradiction = 4;    // standard deviations
 
 // Calls visit(wave j) for k and its unbroken neighbours, as far as kNeighbours.
 template <class Visit>
 void for_neighbours(const std::vector<RegularWave>& waves, std::size_t k, const Visit& visit) {
   visit(waves[k]);
   for (std::size_t j = k; j > 0 && k - j < kNeighbours && waves[j].follows; --j) visit(waves[j - 1]);
-  for (std::size_t j = k + 1; j < waves.size() && j - k <= kNeighbours && waves[j].follows; ++j) visit(waves[j]);
+  for (std::size_t j = k + 1; j < waves.size() && j - k <= kNeighbours && waves[j].follows; ++j)
+    visit(waves[j]);
 }
 
 // Standard deviation of a wave's offset from white noise.
@@ -30,11 +31,13 @@ double offset_sigma(const RegularWave& wave) {
   return wave.noise_density / std::sqrt(2 * (wave.fit.end_s - wave.fit.begin_s));
 }
 
-double slope_between(const WaveFit& a, const WaveFit& b) { return (b.offset_mps2 - a.offset_mps2) / (b.middle_s - a.middle_s); }
+double slope_between(const WaveFit& a, const WaveFit& b) {
+  return (b.offset_mps2 - a.offset_mps2) / (b.middle_s - a.middle_s);
+}
 
-// Drift of the acceleration across wave k, from the offsets of the waves beside it. A wave that speeds up or slows down
-// has a mean acceleration of its own, which is no drift of the sensor: where the two sides contradict each other beyond
-// the noise, the quieter one is believed.
+// Drift of the acceleration across wave k, from the offsets of the waves beside it. A wave that speeds up or
+// slows down has a mean acceleration of its own, which is no drift of the sensor: where the two sides
+// contradict each other beyond the noise, the quieter one is believed.
 double drift_mps3(const std::vector<RegularWave>& waves, std::size_t k) {
   const bool has_before = k > 0 && waves[k].follows, has_after = k + 1 < waves.size() && waves[k + 1].follows;
   if (!has_before || !has_after) return 0.0;
@@ -64,7 +67,8 @@ void pool_noise(std::vector<RegularWave>& waves) {
     for_neighbours(waves, k, [&](const RegularWave& w) { densities.push_back(w.fit.noise_density); });
     const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
     std::nth_element(densities.begin(), middle, densities.end());
-    const double limit = 2 * std::min(*middle, waves[k].fit.noise_density);   // a knock does not speak for the noise
+    const double limit =
+        2 * std::min(*middle, waves[k].fit.noise_density);  // a knock does not speak for the noise
     double squares = 0, count = 0;
     for (const double d : densities) {
       if (d > limit) continue;
@@ -104,7 +108,7 @@ void share_timing(std::vector<RegularWave>& waves, double floor) {
   const std::vector<WaveTiming> timings = share_frequency(events);
   for (std::size_t k = 0; k < waves.size(); ++k) {
     waves[k].timing = timings[k];
-    if (timings[k].waves < 2) {   // alone: its own length, from two crossings of its own
+    if (timings[k].waves < 2) {  // alone: its own length, from two crossings of its own
       waves[k].timing.period_s = waves[k].fit.end_s - waves[k].fit.begin_s;
       waves[k].timing.sigma_s = 2 * events[k].sigma_s;
     }
@@ -116,7 +120,8 @@ void refit(const WaveSeries& series, std::vector<RegularWave>& waves) {
   std::vector<WaveFit> fits;
   for (std::size_t k = 0; k < waves.size(); ++k) {
     const RegularWave& wave = waves[k];
-    fits.push_back(fit_wave(series, wave.begin_s(), wave.end_s(), 2 * pi / wave.timing.period_s, drift_mps3(waves, k)));
+    fits.push_back(
+        fit_wave(series, wave.begin_s(), wave.end_s(), 2 * pi / wave.timing.period_s, drift_mps3(waves, k)));
   }
   for (std::size_t k = 0; k < waves.size(); ++k) waves[k].fit = fits[k];
 }
@@ -152,7 +157,8 @@ void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves
 
   if (raw < settings.clear_snr * sigma) wave.flags |= flag::kBelowNoise;
   const double expected = wave.fit.misfit_mps2 * wave.noise_density / std::max(wave.fit.noise_density, 1e-12);
-  const double misfit = std::sqrt(std::max(0.0, wave.fit.misfit_mps2 * wave.fit.misfit_mps2 - expected * expected));
+  const double misfit =
+      std::sqrt(std::max(0.0, wave.fit.misfit_mps2 * wave.fit.misfit_mps2 - expected * expected));
   bool settling = wave.timing.waves < 3 || misfit > settings.settled_misfit * raw;
   const auto spacing_differs = [&](double spacing_s) {
     return std::abs(spacing_s / wave.timing.period_s - 1) > settings.settled_period + 3 * sigma / raw;
@@ -168,10 +174,11 @@ void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves
 
 }  // namespace
 
-std::vector<RegularWave> regular_waves(const WaveSeries& series, double period_s, const RegularWaveSettings& settings,
+std::vector<RegularWave> regular_waves(const WaveSeries& series, double period_s,
+                                       const RegularWaveSettings& settings,
                                        const SensorKnowledge& knowledge) {
-  // Twice: at the second time the crossings are free of the drift and of each span's own noisy length, and the noise
-  // is free of both.
+  // Twice: at the second time the crossings are free of the drift and of each span's own noisy length, and
+  // the noise is free of both.
   std::vector<RegularWave> waves = first_fits(series, period_s);
   for (int round = 0; round < 2; ++round) {
     pool_noise(waves);
@@ -187,7 +194,8 @@ std::vector<RegularWave> regular_waves(const WaveSeries& series, double period_s
   });
   pool_noise(waves);
   std::vector<RegularWave> result = waves;
-  for (std::size_t k = 0; k < waves.size(); ++k) tell_height(series, waves, k, settings, knowledge, result[k]);
+  for (std::size_t k = 0; k < waves.size(); ++k)
+    tell_height(series, waves, k, settings, knowledge, result[k]);
   return result;
 }
 

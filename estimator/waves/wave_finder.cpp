@@ -11,9 +11,9 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kSight_periods = 1.8;       // half width of the local fit
-constexpr double kStep_periods = 0.125;      // between two local fits
-constexpr double kShortestRatio = 0.6, kLongestRatio = 1.7;   // of the dominant period
+constexpr double kSight_periods = 1.8;                       // half width of the local fit
+constexpr double kStep_periods = 0.125;                      // between two local fits
+constexpr double kShortestRatio = 0.6, kLongestRatio = 1.7;  // of the dominant period
 
 // Line through the bins, for detrending: value at t = 0 and slope.
 std::pair<double, double> line_through(const WaveSeries& series) {
@@ -40,7 +40,8 @@ std::optional<double> dominant_period_s(const WaveSeries& series, const WaveFind
   std::vector<double> signal(padded, 0.0);
   for (const Bin& bin : series.bins()) {
     const auto i = static_cast<std::size_t>(bin.index - first);
-    const double hann = 0.5 - 0.5 * std::cos(2 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(length));
+    const double hann =
+        0.5 - 0.5 * std::cos(2 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(length));
     signal[i] = hann * (bin.up_mps2 - offset - slope * (bin.t_s - series.begin_s()));
   }
   Eigen::FFT<double> fft;
@@ -50,7 +51,8 @@ std::optional<double> dominant_period_s(const WaveSeries& series, const WaveFind
 
   const double df = 1 / (series.bin_s() * static_cast<double>(padded));
   const auto low = static_cast<std::size_t>(std::ceil(1 / (settings.longest_period_s * df)));
-  const auto high = std::min(spectrum.size() - 2, static_cast<std::size_t>(1 / (settings.shortest_period_s * df)));
+  const auto high =
+      std::min(spectrum.size() - 2, static_cast<std::size_t>(1 / (settings.shortest_period_s * df)));
   if (low < 1 || low + 3 > high) return std::nullopt;
   std::vector<double> power(high + 2);
   for (std::size_t k = low - 1; k < power.size(); ++k) power[k] = std::norm(spectrum[k]);
@@ -91,7 +93,8 @@ std::vector<WaveSpan> find_waves(const WaveSeries& series, double period_s) {
   for (double t_s = series.begin_s(); t_s <= series.end_s(); t_s += step_s) {
     while (first < bins.size() && bins[first].t_s < t_s - sight_s) ++first;
     while (last < bins.size() && bins[last].t_s < t_s + sight_s) ++last;
-    // Local fit of a cos + b sin + offset + drift; needs data on both sides of t, or the phase would be a guess.
+    // Local fit of a cos + b sin + offset + drift; needs data on both sides of t, or the phase would be a
+    // guess.
     Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
     Eigen::Vector4d y = Eigen::Vector4d::Zero();
     double near = 0;
@@ -108,7 +111,7 @@ std::vector<WaveSpan> find_waves(const WaveSeries& series, double period_s) {
       continue;
     }
     const Eigen::Vector4d fit = N.ldlt().solve(y);
-    const double raw_phase = std::atan2(-fit(1), fit(0));       // a = Re{(c - i s) e^{i w t}}
+    const double raw_phase = std::atan2(-fit(1), fit(0));  // a = Re{(c - i s) e^{i w t}}
     slow_phase = tracked ? slow_phase + std::remainder(raw_phase - slow_phase, 2 * pi) : raw_phase;
     // Heave is opposite to acceleration (+ pi) and crosses upward where its phase is -pi/2.
     const double cycles_now = (w * t_s + slow_phase + pi + 0.5 * pi) / (2 * pi);

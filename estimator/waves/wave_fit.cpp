@@ -10,7 +10,7 @@ constexpr int kUnknowns = 5;
 using Vector5 = Eigen::Matrix<double, kUnknowns, 1>;
 using Matrix5 = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-constexpr int kBlocks = 24;        // of the residual, per wave
+constexpr int kBlocks = 24;  // of the residual, per wave
 constexpr double kLeastCoverage = 0.75;
 
 // Columns cos, sin, cos 2, sin 2, 1, averaged over the bin.

@@ -8,7 +8,7 @@ void WaveSeries::set_sample_interval(double interval_s) {
   if (started_ || interval_s <= 0) return;
   constexpr double kAbout_s = 0.05;
   bin_s_ = std::max(1.0, std::round(kAbout_s / interval_s)) * interval_s;
-  half_sample_s_ = 0.5 * interval_s;   // so that no sample falls on a bin's edge
+  half_sample_s_ = 0.5 * interval_s;  // so that no sample falls on a bin's edge
 }
 
 void WaveSeries::add(const LevelledSample& sample) {
@@ -35,8 +35,8 @@ void WaveSeries::drop_before(double t_s) {
 }
 
 std::size_t WaveSeries::lower_bound(double t_s) const {
-  const auto it = std::lower_bound(bins_.begin(), bins_.end(), t_s,
-                                   [](const Bin& bin, double t) { return bin.t_s < t; });
+  const auto it =
+      std::lower_bound(bins_.begin(), bins_.end(), t_s, [](const Bin& bin, double t) { return bin.t_s < t; });
   return static_cast<std::size_t>(it - bins_.begin());
 }
 

@@ -18,12 +18,13 @@ Line line_through(const std::vector<WaveEvent>& events, std::size_t first, std::
                   bool curved) {
   const double size = static_cast<double>(n);
   const double centre = static_cast<double>(first) + 0.5 * (size - 1);
-  const double origin_s = events[k].down_crossing_s;   // keeps the sums small
+  const double origin_s = events[k].down_crossing_s;  // keeps the sums small
   double y0 = 0, y1 = 0, y2 = 0, variance = 0;
   const double xx = size * (size * size - 1) / 12, q_mean = (size * size - 1) / 12;
   double qq = 0;
   for (std::size_t i = first; i < first + n; ++i) {
-    const double x = static_cast<double>(i) - centre, y = events[i].down_crossing_s - origin_s, q = x * x - q_mean;
+    const double x = static_cast<double>(i) - centre, y = events[i].down_crossing_s - origin_s,
+                 q = x * x - q_mean;
     y0 += y, y1 += x * y, y2 += q * y, qq += q * q;
     variance += events[i].sigma_s * events[i].sigma_s;
   }
@@ -63,7 +64,8 @@ std::vector<WaveTiming> share_frequency(const std::vector<WaveEvent>& events) {
         for (const std::ptrdiff_t side : {off, -off}) {
           const std::ptrdiff_t first = ideal + side;
           const auto last = first + static_cast<std::ptrdiff_t>(n);
-          if (first < static_cast<std::ptrdiff_t>(low) || last > static_cast<std::ptrdiff_t>(run_end)) continue;
+          if (first < static_cast<std::ptrdiff_t>(low) || last > static_cast<std::ptrdiff_t>(run_end))
+            continue;
           if (first > static_cast<std::ptrdiff_t>(k) || last <= static_cast<std::ptrdiff_t>(k)) continue;
           const bool central = n % 2 == 1 && side == 0 && n >= 5;
           const Line line = line_through(events, static_cast<std::size_t>(first), n, k, central);

@@ -1,0 +1,292 @@
+// Method "harmonic" against the physical limit of REFERENCE section 3 and the uncertainty it states.
+#include "estimator/waves/harmonic.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lcmtypes/flags.h"
+#include "tests/estimator/collector.h"
+#include "tests/estimator/synthetic_waves.h"
+
+namespace waverig::estimator {
+namespace {
+
+using testing::Collector;
+using testing::kPi;
+using testing::SensorErrors;
+using testing::Swing;
+using testing::SyntheticRecord;
+using testing::SyntheticWaves;
+
+constexpr double kMilliG = 1e-3 * kStandardGravity;
+
+// What a calibration leaves, as standard deviations.
+struct Calibration {
+  double bias_mps2 = 0, scale = 0, misalignment = 0;
+};
+constexpr Calibration kFresh{0.2 * kMilliG, 1e-4, 1e-4};
+constexpr Calibration kAged{0.4 * kMilliG, 1e-3, 1e-3};
+
+MethodSettings knowing(const Calibration& c) {
+  MethodSettings settings;
+  settings.sensor.accel_bias_sigma_mps2 = c.bias_mps2;
+  settings.sensor.accel_scale_sigma = c.scale;
+  settings.sensor.accel_misalignment_sigma_rad = c.misalignment;
+  settings.sensor.gravity_sigma_mps2 = 1e-4;
+  return settings;
+}
+
+SyntheticWaves waves_of(double period_s, double height_m, Swing swing) {
+  SyntheticWaves w;
+  w.period_s = period_s;
+  w.height_m = height_m;
+  w.swing = swing;
+  w.rate_Hz = 50;
+  return w;
+}
+
+// Mean over the waves, its error and its stated standard uncertainty.
+struct Mean {
+  double height_m = 0, sigma_m = 0, std_m = 0;
+  int waves = 0;
+};
+
+Mean mean_of(const std::vector<Wave>& waves) {
+  Mean mean;
+  double sum = 0, squares = 0, noise = 0, calibration = 0, tilt = 0, frequency = 0;
+  const double n = static_cast<double>(waves.size());
+  for (const Wave& w : waves) {
+    sum += w.height_m;
+    noise += w.noise_sigma_m * w.noise_sigma_m;
+    calibration += w.calibration_sigma_m;
+    tilt += w.tilt_sigma_m;
+    frequency += w.frequency_sigma_m;
+  }
+  mean.waves = static_cast<int>(waves.size());
+  mean.height_m = sum / n;
+  for (const Wave& w : waves) squares += std::pow(w.height_m - mean.height_m, 2);
+  mean.std_m = std::sqrt(squares / (n - 1));
+  mean.sigma_m = std::sqrt(noise + calibration * calibration + tilt * tilt + frequency * frequency) / n;
+  return mean;
+}
+
+Collector measure(const SyntheticRecord& record, const MethodSettings& settings) {
+  Harmonic method{settings};
+  return testing::run(method, record.samples);
+}
+
+double bound_m(double period_s, double density) {
+  const double w = 2 * kPi / period_s;
+  return 2 / (w * w) * density / std::sqrt(period_s);
+}
+
+TEST(Harmonic, ScattersWithinAQuarterOfTheCramerRaoBoundAndStatesItsNoise) {
+  for (const auto& [period_s, height_m] : {std::pair{2.0, 0.3}, {6.0, 0.6}, {12.0, 1.0}, {20.0, 3.0}}) {
+    double variance = 0, stated = 0, n = 0;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      SyntheticWaves waves = waves_of(period_s, height_m, Swing::kPendulum);
+      waves.duration_s = std::max(100.0, 14 * period_s);
+      waves.phase_rad = 0.8 * static_cast<double>(seed);
+      const SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, seed);
+      const Mean mean = mean_of(measure(record, knowing(kFresh)).waves);
+      variance += mean.std_m * mean.std_m;
+      for (const Wave& w : measure(record, knowing(kFresh)).waves) stated += w.noise_sigma_m, n += 1;
+    }
+    const double bound = bound_m(period_s, SensorErrors{}.accel_noise_mps2_rthz),
+                 std_m = std::sqrt(variance / 8);
+    EXPECT_LT(std_m, 1.25 * bound) << period_s;
+    EXPECT_GT(std_m, 0.8 * bound) << period_s;
+    EXPECT_NEAR(stated / n / std_m, 1, 0.15) << period_s;
+  }
+}
+
+TEST(Harmonic, MeanHeightAfterAFreshCalibrationIsGoodToAPerMilleAboveTheNoise) {
+  for (const auto& [period_s, height_m] :
+       {std::pair{2.0, 0.3}, {4.0, 1.0}, {6.0, 0.6}, {6.0, 3.0}, {12.0, 1.0}, {20.0, 3.0}}) {
+    for (const Swing swing : {Swing::kForced, Swing::kPendulum}) {
+      RandomStream random(11, "fresh");
+      SensorErrors errors =
+          testing::random_errors(random, kFresh.bias_mps2, kFresh.scale, kFresh.misalignment, 0.2 * kDegree);
+      SyntheticWaves waves = waves_of(period_s, height_m, swing);
+      waves.duration_s = 300;
+      const Mean mean = mean_of(measure(testing::synthesize(waves, errors, 3), knowing(kFresh)).waves);
+      const double noise = bound_m(period_s, errors.accel_noise_mps2_rthz) / std::sqrt(mean.waves);
+      EXPECT_LT(std::abs(mean.height_m - height_m), 1e-3 * height_m + 2.5 * noise)
+          << period_s << " " << height_m;
+      EXPECT_LT(std::abs(mean.height_m - height_m), (period_s < 16 ? 0.005 : 0.01) * height_m);
+    }
+  }
+}
+
+TEST(Harmonic, AgedCalibrationWithTheGondolaTiltingStaysWithinOneAndAHalfPercentAndItsUncertainty) {
+  for (const auto& [period_s, height_m] : {std::pair{2.0, 0.3}, {6.0, 0.6}, {12.0, 1.0}, {20.0, 3.0}}) {
+    for (const Swing swing : {Swing::kForced, Swing::kPendulum}) {
+      for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        RandomStream random(seed, "aged");
+        SensorErrors errors;  // every error at its full size, signs at random
+        const auto sign = [&] { return random.uniform() < 0.5 ? -1.0 : 1.0; };
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < 3; ++j) errors.E(i, j) = 1e-3 * sign();
+          errors.b_mps2(i) = 0.4 * kMilliG * sign();
+          errors.gyro_bias_radps(i) = 0.2 * kDegree * sign();
+        }
+        SyntheticWaves waves = waves_of(period_s, height_m, swing);
+        waves.duration_s = 300;
+        waves.forced_phase_rad = random.uniform(0, 2 * kPi);
+        waves.forced_azimuth_rad = random.uniform(0, 2 * kPi);
+        const Mean mean = mean_of(measure(testing::synthesize(waves, errors, seed), knowing(kAged)).waves);
+        EXPECT_LT(std::abs(mean.height_m - height_m), 0.015 * height_m) << period_s << " " << seed;
+        EXPECT_LT(std::abs(mean.height_m - height_m), 2.5 * mean.sigma_m) << period_s << " " << seed;
+      }
+    }
+  }
+}
+
+// 240 sensors: 93-97 % of the true heights inside mean +- 2 sigma, and sigma neither idle nor timid.
+TEST(Harmonic, StatedUncertaintyCoversTheTruthAsOftenAsItSays) {
+  constexpr int kSensors = 240;
+  int inside = 0;
+  double squares = 0;
+  for (std::uint64_t seed = 0; seed < kSensors; ++seed) {
+    RandomStream random(seed, "coverage");
+    const double period_s = random.uniform(3, 10), height_m = random.uniform(0.3, 1.0);
+    SyntheticWaves waves = waves_of(period_s, height_m, seed % 2 ? Swing::kForced : Swing::kPendulum);
+    waves.duration_s = 90;
+    waves.phase_rad = random.uniform(0, 2 * kPi);
+    waves.forced_phase_rad = random.uniform(0, 2 * kPi);
+    waves.forced_azimuth_rad = random.uniform(0, 2 * kPi);
+    waves.mounting = {random.gaussian(0.1), random.gaussian(0.1), 0};
+    const SensorErrors errors =
+        testing::random_errors(random, kAged.bias_mps2, kAged.scale, kAged.misalignment, 0.2 * kDegree);
+    const Mean mean = mean_of(measure(testing::synthesize(waves, errors, seed), knowing(kAged)).waves);
+    const double z = (mean.height_m - height_m) / mean.sigma_m;
+    inside += std::abs(z) <= 2;
+    squares += z * z;
+  }
+  EXPECT_GE(inside, kSensors * 93 / 100);
+  EXPECT_LE(inside, kSensors * 97 / 100 + 1);
+  EXPECT_NEAR(std::sqrt(squares / kSensors), 1, 0.12);
+}
+
+// The true crest-to-trough height of each wave's own span.
+double worst_error(const SyntheticRecord& record, const Collector& found, double period_s) {
+  double worst = 0;
+  for (const Wave& wave : found.waves) {
+    const auto index = [&](double t_s) {
+      return std::min(record.samples.size(),
+                      static_cast<std::size_t>(std::lround(
+                          std::max(0.0, static_cast<double>(wave.start_utime - record.samples.front().utime) *
+                                                kMicrosecond +
+                                            t_s) *
+                          50)));
+    };
+    const auto [low, high] =
+        std::minmax_element(record.heave_m.begin() + static_cast<std::ptrdiff_t>(index(0)),
+                            record.heave_m.begin() + static_cast<std::ptrdiff_t>(index(period_s)));
+    worst = std::max(worst, std::abs(wave.height_m - (*high - *low)));
+  }
+  return worst;
+}
+
+TEST(Harmonic, FollowsAModulatedAmplitudeWaveByWave) {
+  SyntheticWaves waves = waves_of(6, 1, Swing::kPendulum);
+  waves.modulation = 0.2;
+  waves.modulation_period_s = 80;
+  const SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, 1);
+  const Collector found = measure(record, knowing(kFresh));
+  EXPECT_GE(found.waves.size(), 47U);
+  EXPECT_LT(worst_error(record, found, 6), 0.015);
+}
+
+TEST(Harmonic, FollowsASlowlyChangingPeriod) {
+  SyntheticWaves waves = waves_of(8, 1, Swing::kPendulum);
+  waves.chirp_ps = 5e-4;  // 15 % over the record
+  const SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, 1);
+  const Collector found = measure(record, knowing(kFresh));
+  ASSERT_GE(found.waves.size(), 37U);
+  EXPECT_LT(worst_error(record, found, 8), 0.02);
+  const Wave& late = found.waves[found.waves.size() - 6];
+  const double t_s = static_cast<double>(late.start_utime - record.samples.front().utime) * kMicrosecond + 4;
+  EXPECT_NEAR(late.period_s, 8 / (1 + waves.chirp_ps * t_s), 0.01);
+}
+
+TEST(Harmonic, SaysNothingAtRestAndFlagsTheWavesOfTheRamp) {
+  SyntheticWaves waves = waves_of(6, 1, Swing::kPendulum);
+  waves.rest_s = 60;
+  waves.ramp_waves = 4;
+  waves.duration_s = 120;
+  const SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, 1);
+  const Collector found = measure(record, knowing(kFresh));
+  int steady = 0;
+  for (const Wave& wave : found.waves) {
+    const double t_s = static_cast<double>(wave.start_utime - record.samples.front().utime) * kMicrosecond;
+    EXPECT_GT(t_s + wave.period_s, 60);
+    if (t_s < record.steady_from_s - 6) {
+      EXPECT_TRUE(wave.flags & flag::kSettling) << t_s;
+    } else if (t_s > record.steady_from_s) {
+      EXPECT_EQ(wave.flags, 0) << t_s;
+      EXPECT_NEAR(wave.height_m, 1, 0.015) << t_s;
+      ++steady;
+    }
+  }
+  EXPECT_GE(steady, 15);
+  for (const HeaveSample& heave : found.heaves) {
+    if (heave.utime < record.samples.front().utime + 50'000'000) {
+      EXPECT_EQ(heave.heave_m, 0);
+      EXPECT_TRUE(heave.flags & flag::kSettling);
+    }
+  }
+}
+
+TEST(Harmonic, BadSamplesCostNothingButTheirFlags) {
+  SyntheticWaves waves = waves_of(6, 1, Swing::kPendulum);
+  waves.duration_s = 200;
+  SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, 1);
+  std::vector<ImuSample> samples;
+  for (ImuSample s : record.samples) {
+    if (s.seq % 1000 > 990) continue;                // gaps
+    if (s.seq % 997 == 0) s.f_B.z() += 25;           // spikes
+    if (s.seq % 1009 == 0) s.w_NB_B.x() = kUnknown;  // not a number
+    samples.push_back(s);
+    if (s.seq % 503 == 0) samples.push_back(s);                                         // repeats
+    if (s.seq % 701 == 0 && s.seq > 9) samples.push_back(samples[samples.size() - 6]);  // stragglers
+  }
+  const Collector found = measure({samples, record.heave_m, record.q_NB, 0}, knowing(kFresh));
+  ASSERT_EQ(found.heaves.size(), samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_EQ(found.heaves[i].seq, samples[i].seq);
+  ASSERT_GE(found.waves.size(), 31U);
+  std::int32_t flags = 0;
+  for (const Wave& wave : found.waves) {
+    EXPECT_NEAR(wave.height_m, 1, 0.015);
+    flags |= wave.flags;
+  }
+  EXPECT_EQ(flags & (flag::kGap | flag::kSpike | flag::kRange), flag::kGap | flag::kSpike | flag::kRange);
+}
+
+TEST(Harmonic, HeaveIsTheTruthWithinTheNoiseOfAWave) {
+  const SyntheticRecord record = testing::synthesize(waves_of(6, 1, Swing::kPendulum), SensorErrors{}, 1);
+  const Collector found = measure(record, knowing(kFresh));
+  ASSERT_EQ(found.heaves.size(), record.samples.size());
+  double squares = 0, n = 0;
+  for (std::size_t i = 500; i + 700 < found.heaves.size(); ++i) {
+    squares += std::pow(found.heaves[i].heave_m - record.heave_m[i], 2);
+    n += 1;
+  }
+  EXPECT_LT(std::sqrt(squares / n), 0.003);
+}
+
+TEST(Harmonic, FindsTheSameWavesAtAnyRateAndInAnyMounting) {
+  for (const double rate_Hz : {10.0, 20.0, 100.0, 285.7}) {
+    SyntheticWaves waves = waves_of(5, 1, Swing::kPendulum);
+    waves.rate_Hz = rate_Hz;
+    waves.duration_s = 100;
+    waves.mounting = rate_Hz > 50 ? Euler{2.9, 0.3, 1} : Euler{0.5, -0.4, 1};
+    const Mean mean = mean_of(measure(testing::synthesize(waves, SensorErrors{}, 1), knowing(kFresh)).waves);
+    EXPECT_GE(mean.waves, 18) << rate_Hz;
+    EXPECT_NEAR(mean.height_m, 1, 0.003) << rate_Hz;
+  }
+}
+
+}  // namespace
+}  // namespace waverig::estimator

@@ -1,0 +1,106 @@
+// Lee, Lee, Heo 2014: the published method.
+#include "estimator/waves/lee2014.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/estimator/collector.h"
+#include "tests/estimator/synthetic_waves.h"
+
+namespace waverig::estimator {
+namespace {
+
+using testing::Collector;
+using testing::SensorErrors;
+using testing::SyntheticRecord;
+using testing::SyntheticWaves;
+
+SensorErrors no_errors() {
+  SensorErrors e;
+  e.accel_noise_mps2_rthz = e.gyro_noise_radps_rthz = 1e-9;  // a reading that never changes is a flat line
+  return e;
+}
+
+SyntheticWaves waves_of(double period_s, double height_m) {
+  SyntheticWaves w;
+  w.period_s = period_s;
+  w.height_m = height_m;
+  w.rest_s = 5;
+  w.ramp_waves = 3;
+  w.duration_s = 180;
+  w.mounting = {};
+  return w;
+}
+
+double mean_height(const Collector& found, const SyntheticRecord& record) {
+  double sum = 0, n = 0;
+  for (const Wave& wave : found.waves) {
+    const double t_s = static_cast<double>(wave.start_utime - record.samples.front().utime) * kMicrosecond;
+    if (t_s < record.steady_from_s + 2 * wave.period_s) continue;
+    sum += wave.height_m;
+    n += 1;
+  }
+  return sum / n;
+}
+
+TEST(Lee2014, FindsEveryWaveAndItsHeightWithAPerfectSensor) {
+  for (const double period_s : {6.0, 12.0}) {
+    const SyntheticRecord record = testing::synthesize(waves_of(period_s, 1), no_errors(), 1);
+    Lee2014 method{MethodSettings{}};
+    const Collector found = testing::run(method, record.samples);
+    EXPECT_NEAR(mean_height(found, record), 1, 0.02) << period_s;
+    EXPECT_NEAR(static_cast<double>(found.waves.size()), 180 / period_s - 2, 2) << period_s;
+    for (std::size_t k = 6; k < found.waves.size(); ++k) {
+      EXPECT_NEAR(found.waves[k].period_s, period_s, 0.02 * period_s);
+    }
+  }
+}
+
+TEST(Lee2014, GivesOneHeaveASampleWithItsTimeAndNumber) {
+  SyntheticWaves waves = waves_of(6, 1);
+  waves.duration_s = 20;
+  SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, 1);
+  record.samples.insert(record.samples.begin() + 700, record.samples[650]);  // a straggler
+  Lee2014 method{MethodSettings{}};
+  const Collector found = testing::run(method, record.samples);
+  ASSERT_EQ(found.heaves.size(), record.samples.size());
+  for (std::size_t i = 0; i < found.heaves.size(); ++i) {
+    EXPECT_EQ(found.heaves[i].utime, record.samples[i].utime);
+    EXPECT_EQ(found.heaves[i].seq, record.samples[i].seq);
+  }
+}
+
+TEST(Lee2014, TraceOfEquation10RunsAwayWithHalfTheBiasTimesTimeSquared) {
+  const double bias = 0.02;
+  Lee2014 method{MethodSettings{}};
+  RandomStream tiny(1, "tiny");  // a reading that never changes would be a flat line
+  Collector found;
+  for (int i = 0; i <= 6000; ++i) {
+    ImuSample s;
+    s.utime = i * 10'000;
+    s.seq = i;
+    s.f_B = Vector3d(0, 0, -kStandardGravity - bias + 1e-7 * tiny.gaussian());
+    method.add(s, found);
+  }
+  EXPECT_NEAR(found.heaves.back().heave_m, 0.5 * bias * 60 * 60, 0.01 * 36);
+}
+
+// The weakness to know: b t^2 / 2 is neither cosine, line nor offset and leaks into alpha in proportion to
+// T^2.
+TEST(Lee2014, BiasLeaksIntoTheHeightWithThePeriodSquared) {
+  const auto leak = [](double period_s) {
+    SensorErrors errors = no_errors();
+    const SyntheticWaves waves = waves_of(period_s, 2);
+    const SyntheticRecord clean = testing::synthesize(waves, errors, 1);
+    errors.b_mps2 = Vector3d(0, 0, -0.004);
+    const SyntheticRecord biased = testing::synthesize(waves, errors, 1);
+    Lee2014 first{MethodSettings{}}, second{MethodSettings{}};
+    return mean_height(testing::run(second, biased.samples), biased) -
+           mean_height(testing::run(first, clean.samples), clean);
+  };
+  const double at_4 = leak(4), at_8 = leak(8);
+  EXPECT_GT(std::abs(at_4), 1e-3);
+  EXPECT_NEAR(at_8 / at_4, 4, 0.8);
+}
+
+}  // namespace
+}  // namespace waverig::estimator

@@ -1,0 +1,121 @@
+#include "estimator/sample_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "lcmtypes/flags.h"
+#include "motion/kinematics/random.h"
+
+namespace waverig::estimator {
+namespace {
+
+constexpr std::int64_t kInterval_us = 10'000;
+
+class SampleGuardTest : public ::testing::Test {
+ protected:
+  // The i-th sample of a calm, noisy record.
+  ImuSample sample(std::int64_t i) {
+    ImuSample s;
+    s.utime = i * kInterval_us;
+    s.seq = i;
+    s.f_B = Vector3d(noise_.gaussian(0.02), noise_.gaussian(0.02), -9.8 + noise_.gaussian(0.02));
+    s.w_NB_B = Vector3d(noise_.gaussian(0.01), 0, 0);
+    return s;
+  }
+  void feed(std::int64_t from, std::int64_t to) {
+    for (std::int64_t i = from; i < to; ++i) ASSERT_TRUE(guard_.check(sample(i)).usable);
+  }
+  RandomStream noise_{1, "guard"};
+  SampleGuard guard_;
+};
+
+TEST_F(SampleGuardTest, LetsGoodSamplesThroughWithTheirInterval) {
+  EXPECT_EQ(guard_.check(sample(0)).dt_s, 0);
+  for (std::int64_t i = 1; i < 500; ++i) {
+    const GuardVerdict verdict = guard_.check(sample(i));
+    ASSERT_TRUE(verdict.usable);
+    ASSERT_EQ(verdict.flags, 0);
+    ASSERT_DOUBLE_EQ(verdict.dt_s, 0.01);
+  }
+  EXPECT_NEAR(guard_.usual_interval_s(), 0.01, 1e-12);
+}
+
+TEST_F(SampleGuardTest, RefusesRepeatedAndOutOfOrderSamples) {
+  feed(0, 100);
+  EXPECT_FALSE(guard_.check(sample(99)).usable);
+  EXPECT_FALSE(guard_.check(sample(50)).usable);
+  EXPECT_TRUE(guard_.check(sample(50)).flags & flag::kRange);
+  const GuardVerdict next = guard_.check(sample(100));
+  EXPECT_TRUE(next.usable);
+  EXPECT_DOUBLE_EQ(next.dt_s, 0.01);
+}
+
+TEST_F(SampleGuardTest, RefusesWhatIsNotFiniteOrNotPlausible) {
+  feed(0, 100);
+  ImuSample s = sample(100);
+  s.f_B.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(guard_.check(s).usable);
+  s = sample(101);
+  s.w_NB_B.z() = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(guard_.check(s).usable);
+  s = sample(102);
+  s.f_B.x() = 1e6;
+  EXPECT_TRUE(guard_.check(s).flags & flag::kRange);
+  EXPECT_TRUE(guard_.check(sample(103)).usable);
+}
+
+TEST_F(SampleGuardTest, TellsAGapAndItsLength) {
+  feed(0, 100);
+  const GuardVerdict verdict = guard_.check(sample(150));
+  EXPECT_TRUE(verdict.usable);
+  EXPECT_TRUE(verdict.flags & flag::kGap);
+  EXPECT_DOUBLE_EQ(verdict.dt_s, 0.51);
+  EXPECT_FALSE(guard_.check(sample(151)).flags & flag::kGap);
+}
+
+TEST_F(SampleGuardTest, RefusesASpikeButNotAStep) {
+  feed(0, 100);
+  ImuSample s = sample(100);
+  s.f_B.z() += 15;
+  const GuardVerdict spike = guard_.check(s);
+  EXPECT_FALSE(spike.usable);
+  EXPECT_TRUE(spike.flags & flag::kSpike);
+  EXPECT_TRUE(guard_.check(sample(101)).usable);
+  int usable = 0;
+  for (std::int64_t i = 102; i < 110; ++i) {
+    s = sample(i);
+    s.f_B.z() += 15;
+    usable += guard_.check(s).usable;
+  }
+  EXPECT_EQ(usable, 6);  // the third of a row is believed
+}
+
+TEST_F(SampleGuardTest, RefusesAFlatLineUntilItMovesAgain) {
+  feed(0, 100);
+  ImuSample stuck = sample(100);
+  int refused = 0;
+  for (std::int64_t i = 100; i < 400; ++i) {
+    stuck.utime = i * kInterval_us;
+    const GuardVerdict verdict = guard_.check(stuck);
+    refused += !verdict.usable;
+    EXPECT_EQ(verdict.usable, !(verdict.flags & flag::kFlatLine));
+  }
+  EXPECT_EQ(refused, 200);  // one second is needed to tell
+  EXPECT_TRUE(guard_.check(sample(400)).usable);
+}
+
+TEST_F(SampleGuardTest, FlagsSaturationAndKeepsTheFlagsOfTheSample) {
+  SampleGuardSettings settings;
+  settings.accel_limit_mps2 = 39;
+  SampleGuard guard(settings);
+  ImuSample s = sample(0);
+  s.f_B.z() = -39;
+  s.flags = flag::kUncalibrated;
+  const GuardVerdict verdict = guard.check(s);
+  EXPECT_TRUE(verdict.usable);
+  EXPECT_EQ(verdict.flags, flag::kSaturation | flag::kUncalibrated);
+}
+
+}  // namespace
+}  // namespace waverig::estimator
