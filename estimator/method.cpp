@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "estimator/compass/directional_method.h"
 #include "estimator/heave/realtime.h"
 #include "estimator/heave/smoothed.h"
 #include "estimator/heave/spectral.h"
@@ -29,6 +30,7 @@ constexpr std::array kMethods{
     Entry{"realtime", make<Realtime>},
     Entry{"smoothed", make<Smoothed>},
     Entry{"spectral", make<Spectral>},
+    Entry{"directional", make<Directional>},
 };
 
 }  // namespace

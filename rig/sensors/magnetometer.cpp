@@ -20,7 +20,8 @@ Vector3d dipole_uT(const Vector3d& moment_Am2, const Vector3d& r_m) {
 
 Vector3d earth_field_N_uT(const EarthFieldSettings& s) {
   const double level = s.total_uT * std::cos(s.dip_rad);
-  return {level * std::cos(s.declination_rad), level * std::sin(s.declination_rad), s.total_uT * std::sin(s.dip_rad)};
+  return {level * std::cos(s.declination_rad), level * std::sin(s.declination_rad),
+          s.total_uT * std::sin(s.dip_rad)};
 }
 
 Vector3d motor_field_N_uT(const MotorFieldSettings& s, const Vector3d& position_N_m) {
@@ -86,7 +87,7 @@ Magnetometer::Magnetometer(const MagnetometerSettings& settings, const Magnetome
 Eigen::Vector3i Magnetometer::sample(const BodyMotion& motion) {
   if (!started_) next_utime_ = motion.utime;
   started_ = true;
-  if (motion.utime >= next_utime_) {                                                             // 6
+  if (motion.utime >= next_utime_) {  // 6
     convert(motion);
     next_utime_ = std::max(next_utime_ + interval_us_, motion.utime - interval_us_);
   }
@@ -94,12 +95,12 @@ Eigen::Vector3i Magnetometer::sample(const BodyMotion& motion) {
 }
 
 void Magnetometer::convert(const BodyMotion& motion) {
-  const Vector3d field_N = earth_N_uT_ + motor_field_N_uT(settings_.motor, motion.position_N);   // 1, 2
-  Vector3d field = unit_.soft_iron * (motion.q_NB.conjugate() * field_N) + unit_.hard_iron_uT;   // 3
-  if (settings_.noise_uT > 0)                                                                    // 4
+  const Vector3d field_N = earth_N_uT_ + motor_field_N_uT(settings_.motor, motion.position_N);  // 1, 2
+  Vector3d field = unit_.soft_iron * (motion.q_NB.conjugate() * field_N) + unit_.hard_iron_uT;  // 3
+  if (settings_.noise_uT > 0)                                                                   // 4
     for (int i = 0; i < 3; ++i) field[i] += noise_stream_.gaussian(settings_.noise_uT);
   saturated_ = false;
-  for (int i = 0; i < 3; ++i) {                                                                  // 5
+  for (int i = 0; i < 3; ++i) {  // 5
     double count = std::nearbyint(field[i] * counts_per_uT_);
     const double limit = settings_.largest_count > 0 ? settings_.largest_count : 2.0e9;
     if (std::abs(count) > limit) {

@@ -1,8 +1,9 @@
 // The rotating arm as a wave buoy's calibration wheel: the direction of its plane, in four placements.
 #include <gtest/gtest.h>
 
-#include "estimator/attitude/attitude_smoother.h"
-#include "estimator/compass/directional.h"
+#include "estimator/compass/magnetic_calibration.h"
+#include "estimator/method.h"
+#include "lcmtypes/flags.h"
 #include "motion/kinematics/earth.h"
 #include "motion/kinematics/random.h"
 #include "rig/mechanism/rotating_arm.h"
@@ -82,19 +83,22 @@ std::vector<estimator::ImuSample> ride(const Compass& compass, double azimuth_ra
   return samples;
 }
 
-estimator::DirectionalSea analysed(const Compass& compass, const std::vector<estimator::ImuSample>& samples) {
-  const double gravity = gravity_mps2({36 * kDegree, 0, 50});
-  // The wheel's path at 20 s is larger than the smoother takes for granted.
-  const auto attitudes = estimator::smooth_attitude(samples, {.gravity_mps2 = gravity, .motion_m2s = 3});
-  estimator::DirectionalSettings settings;
-  settings.compass = {compass.calibration, kDeclination};
-  estimator::DirectionalAnalysis analysis(settings);
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    analysis.add({.utime = samples[i].utime,
-                  .a_L = attitudes[i].a_N,
-                  .q_LB = attitudes[i].q_NB,
-                  .m_B_uT = samples[i].m_B_uT});
-  return analysis.finish();
+class LastSea : public estimator::Output {
+ public:
+  void sea(const estimator::SeaState& state) override { last = state; }
+  estimator::SeaState last;
+};
+
+estimator::SeaState told(const estimator::CompassSettings& compass,
+                         const std::vector<estimator::ImuSample>& samples) {
+  estimator::MethodSettings settings;
+  settings.sensor.gravity_mps2 = gravity_mps2({36 * kDegree, 0, 50});
+  settings.compass = compass;
+  const auto method = estimator::make_method("directional", settings);
+  LastSea output;
+  for (const auto& sample : samples) method->add(sample, output);
+  method->finish(output);
+  return output.last;
 }
 
 double off_deg(double a_rad, double b_rad) {
@@ -115,7 +119,7 @@ TEST(ArmDirection, IsThePlaneOfTheArmWithinTwoDegreesInFourPlacements) {
       const double azimuth = (first_deg + 90 * placement) * kDegree;
       const auto samples = ride(compass, azimuth, turn.period_s, turn.height_m,
                                 std::max(120.0, 16 * turn.period_s), {0.1, -0.08, 0.15});
-      const estimator::DirectionalSea sea = analysed(compass, samples);
+      const estimator::SeaState sea = told({compass.calibration, kDeclination}, samples);
       std::printf("T %5.2f s, arm %3.0f deg: direction %+5.2f deg off, spread %4.1f deg, check factor %.4f\n",
                   turn.period_s, azimuth / kDegree, off_deg(sea.mean_direction_rad, azimuth),
                   sea.spread_rad / kDegree, sea.check_factor);
@@ -129,13 +133,21 @@ TEST(ArmDirection, IsThePlaneOfTheArmWithinTwoDegreesInFourPlacements) {
 }
 
 TEST(ArmDirection, WithoutCalibrationErrsByTheIronOfTheBoard) {
-  Compass compass(3);
+  const Compass compass(3);
   const auto samples = ride(compass, 1.0, 6.25, 1, 120, Vector3d::Zero());
-  const double calibrated = std::abs(off_deg(analysed(compass, samples).mean_direction_rad, 1.0));
-  compass.calibration = {};
-  const double raw = std::abs(off_deg(analysed(compass, samples).mean_direction_rad, 1.0));
-  EXPECT_LT(calibrated, 2);
-  EXPECT_GT(raw, 5);
+  const auto error_deg = [&](const estimator::CompassSettings& settings) {
+    return std::abs(off_deg(told(settings, samples).mean_direction_rad, 1.0));
+  };
+  EXPECT_LT(error_deg({compass.calibration, kDeclination}), 2);
+  EXPECT_GT(error_deg({{}, kDeclination}), 5);
+  EXPECT_NEAR(error_deg({compass.calibration, 0}), std::abs(kDeclination) / kDegree, 2);
+}
+
+TEST(ArmDirection, IsNotToldWithoutAMagnetometer) {
+  const Compass compass(3);
+  auto samples = ride(compass, 1.0, 6.25, 1, 60, Vector3d::Zero());
+  for (auto& sample : samples) sample.flags |= flag::kNoMagnetometer;
+  EXPECT_TRUE(std::isnan(told({compass.calibration, kDeclination}, samples).mean_direction_rad));
 }
 
 }  // namespace
