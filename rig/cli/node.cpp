@@ -9,29 +9,31 @@
 namespace waverig::cli {
 namespace {
 
-constexpr const char* kSession = R"(Each node is a process of its own; they meet on the bus, in real time, in any order but motion last.
+constexpr const char* kSession =
+    R"(Each node is a process of its own; they meet on the bus, in real time. The others first, motion last.
 Each ends well on SIGINT and SIGTERM. A whole session on the simulated rig, calibration.json from a sweep of the campaign:
 
   RUN=T06.00s_H060.0cm_r1
-  waverig node rig-sim rig/default.toml --run $RUN --serial-link /tmp/sensor &
+  waverig node rig-sim rig/default.toml --run $RUN --serial-link /tmp/sensor & sleep 2
   waverig node acquisition rig/default.toml --serial /tmp/sensor --calibration results/default/calibration.json &
   waverig node estimator harmonic --campaign rig/default.toml --one-record &
   waverig node estimator lee2014 --campaign rig/default.toml --one-record &
   waverig node recorder --out $RUN.lcm --one-record &
-  waverig node evaluator --campaign rig/default.toml --run $RUN --out results/$RUN &
+  waverig node evaluator --campaign rig/default.toml --run $RUN --out results/$RUN & sleep 2
   waverig node motion rig/default.toml --run $RUN --drive tcp://127.0.0.1:5020
-  wait %3 %4 %5 %6; kill %2 %1
+  wait %3 %4 %5 %6; kill %2; wait %2; kill %1
 
 With a real rig, leave out rig-sim and give motion its drive (rtu:/dev/ttyUSB0) and acquisition its serial port.
 A method of your own is any program that publishes heave_t on WAVERIG_HEAVE_<name>.)";
 
 // A node's subcommand with what all nodes have; run is called with the arguments when it is chosen.
 template <class Arguments>
-CLI::App* add(CLI::App& nodes, const char* name, const char* what, Command& chosen, const std::shared_ptr<Arguments>& arguments,
-              int (*run)(const Arguments&)) {
+CLI::App* add(CLI::App& nodes, const char* name, const char* what, Command& chosen,
+              const std::shared_ptr<Arguments>& arguments, int (*run)(const Arguments&)) {
   CLI::App* command = nodes.add_subcommand(name, what);
   arguments->bus = kDefaultBus;
-  command->add_option("--bus", arguments->bus, "LCM address; other jobs need a port of their own")->capture_default_str();
+  command->add_option("--bus", arguments->bus, "LCM address; other jobs need a port of their own")
+      ->capture_default_str();
   command->callback([arguments, run, &chosen] { chosen = [arguments, run] { return run(*arguments); }; });
   return command;
 }
@@ -42,21 +44,26 @@ void add_campaign_and_run(CLI::App& command, std::string& campaign, std::string&
 }
 
 void add_speed(CLI::App& command, double& speed) {
-  command.add_option("--speed", speed, "Of the rig's time against real time; the same for rig-sim and motion")
+  command
+      .add_option("--speed", speed, "Of the rig's time against real time; the same for rig-sim and motion")
       ->check(CLI::Range(0.01, 100.0))
       ->capture_default_str();
 }
 
 void add_rig_sim(CLI::App& nodes, Command& chosen) {
   auto a = std::make_shared<RigSimArguments>();
-  CLI::App* command = add(nodes, "rig-sim", "The simulated rig: a drive on Modbus TCP, frames on a serial line, the truth", chosen,
-                          a, run_rig_sim);
+  CLI::App* command =
+      add(nodes, "rig-sim", "The simulated rig: a drive on Modbus TCP, frames on a serial line, the truth",
+          chosen, a, run_rig_sim);
   add_campaign_and_run(*command, a->campaign, a->run);
   command->add_option("--port", a->port, "TCP port of the drive; 0: any free one, which it prints")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  command->add_option("--serial-link", a->serial_link, "A name for the serial line, beside the one it prints");
-  command->add_option("--watchdog-ms", a->watchdog_ms, "The drive stops when it hears nothing for so long, in the rig's time")
+  command->add_option("--serial-link", a->serial_link,
+                      "A name for the serial line, beside the one it prints");
+  command
+      ->add_option("--watchdog-ms", a->watchdog_ms,
+                   "The drive stops when it hears nothing for so long, in the rig's time")
       ->check(CLI::Range(20.0, 10000.0))
       ->capture_default_str();
   add_speed(*command, a->speed);
@@ -65,16 +72,22 @@ void add_rig_sim(CLI::App& nodes, Command& chosen) {
 void add_motion(CLI::App& nodes, Command& chosen) {
   auto a = std::make_shared<MotionArguments>();
   CLI::App* command =
-      add(nodes, "motion", "One run of the arm through its drive; SIGUSR1 holds it, SIGUSR2 lets it go on", chosen, a, run_motion);
+      add(nodes, "motion", "One run of the arm through its drive; SIGUSR1 holds it, SIGUSR2 lets it go on",
+          chosen, a, run_motion);
   add_campaign_and_run(*command, a->campaign, a->run);
   command->add_option("--drive", a->drive, "tcp://ADDRESS:PORT or rtu:DEVICE (Modbus)")->required();
-  command->add_option("--max-cycle-gap-ms", a->max_cycle_gap_ms, "Alarm where two control cycles are further apart")
+  command
+      ->add_option("--max-cycle-gap-ms", a->max_cycle_gap_ms,
+                   "Alarm where two control cycles are further apart")
       ->check(CLI::Range(10.0, 10000.0))
       ->capture_default_str();
-  command->add_option("--max-following-error-deg", a->max_following_error_deg, "Alarm where the arm is further from its setpoint")
+  command
+      ->add_option("--max-following-error-deg", a->max_following_error_deg,
+                   "Alarm where the arm is further from its setpoint")
       ->check(CLI::Range(0.01, 45.0))
       ->capture_default_str();
-  command->add_option("--response-timeout-ms", a->response_timeout_ms, "How long the drive may take to answer")
+  command
+      ->add_option("--response-timeout-ms", a->response_timeout_ms, "How long the drive may take to answer")
       ->check(CLI::Range(1.0, 5000.0))
       ->capture_default_str();
   add_speed(*command, a->speed);
@@ -83,30 +96,38 @@ void add_motion(CLI::App& nodes, Command& chosen) {
 
 void add_acquisition(CLI::App& nodes, Command& chosen) {
   auto a = std::make_shared<AcquisitionArguments>();
-  CLI::App* command = add(nodes, "acquisition", "Frames from a serial line to counts and calibrated samples", chosen, a, run_acquisition);
+  CLI::App* command = add(nodes, "acquisition", "Frames from a serial line to counts and calibrated samples",
+                          chosen, a, run_acquisition);
   command->add_option("campaign", a->campaign, "Campaign file (TOML): which sensor")->required();
   command->add_option("--serial", a->serial, "Serial port or pseudo-terminal")->required();
   command->add_option("--baud", a->baud, "Of the serial port")->capture_default_str();
-  command->add_option("--calibration", a->calibration, "calibration.json; without it samples are flagged as uncalibrated");
+  command->add_option("--calibration", a->calibration,
+                      "calibration.json; without it samples are flagged as uncalibrated");
 }
 
 void add_estimator(CLI::App& nodes, Command& chosen) {
   auto a = std::make_shared<EstimatorArguments>();
-  CLI::App* command = add(nodes, "estimator", "One method, from samples to heave and waves", chosen, a, run_estimator);
+  CLI::App* command =
+      add(nodes, "estimator", "One method, from samples to heave and waves", chosen, a, run_estimator);
   command->add_option("method", a->method, "Name of the method, e.g. harmonic")->required();
   command->add_option("--campaign", a->campaign, "For what is known of sensor and place");
-  command->add_option("--calibration", a->calibration, "calibration.json, for what it says of its own uncertainty");
+  command->add_option("--calibration", a->calibration,
+                      "calibration.json, for what it says of its own uncertainty");
   command->add_flag("--one-record", a->one_record, "End after one record");
 }
 
 void add_evaluator(CLI::App& nodes, Command& chosen) {
   auto a = std::make_shared<EvaluatorArguments>();
-  CLI::App* command = add(nodes, "evaluator", "Judges every method it hears against the truth of one run", chosen, a, run_evaluator);
+  CLI::App* command = add(nodes, "evaluator", "Judges every method it hears against the truth of one run",
+                          chosen, a, run_evaluator);
   command->add_option("--run", a->run, "Name of the run")->required();
-  command->add_option("--out", a->out, "Results directory, made anew when the run has ended well")->required();
+  command->add_option("--out", a->out, "Results directory, made anew when the run has ended well")
+      ->required();
   command->add_option("--campaign", a->campaign, "For the sensor's noise, and to be kept with the results");
   command->add_flag("--replace", a->replace, "Replace results that are there");
-  command->add_option("--quiet-s", a->quiet_s, "Ends when no estimate came for so long after the end of the record")
+  command
+      ->add_option("--quiet-s", a->quiet_s,
+                   "Ends when no estimate came for so long after the end of the record")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
   command->footer("Exit status 1 where the run was stopped, or nothing was heard.");
@@ -114,11 +135,14 @@ void add_evaluator(CLI::App& nodes, Command& chosen) {
 
 void add_recorder(CLI::App& nodes, Command& chosen) {
   auto a = std::make_shared<RecorderArguments>();
-  CLI::App* command = add(nodes, "recorder", "Everything on the bus into an LCM event log", chosen, a, run_recorder);
+  CLI::App* command =
+      add(nodes, "recorder", "Everything on the bus into an LCM event log", chosen, a, run_recorder);
   command->add_option("--out", a->out, "The log; FILE.part until it is whole")->required();
   command->add_flag("--one-record", a->one_record, "End after one record");
   command->add_flag("--replace", a->replace, "Replace a log that is there");
-  command->add_option("--quiet-s", a->quiet_s, "With --one-record: ends when no estimate came for so long after its end")
+  command
+      ->add_option("--quiet-s", a->quiet_s,
+                   "With --one-record: ends when no estimate came for so long after its end")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
 }
@@ -126,15 +150,16 @@ void add_recorder(CLI::App& nodes, Command& chosen) {
 }  // namespace
 
 void add_node(CLI::App& app, Command& chosen) {
-  CLI::App* nodes = app.add_subcommand("node", "One node of the laboratory, in real time on a bus of many processes");
+  CLI::App* nodes =
+      app.add_subcommand("node", "One node of the laboratory, in real time on a bus of many processes");
   nodes->require_subcommand(1);
-  nodes->footer(kSession);
   add_rig_sim(*nodes, chosen);
   add_motion(*nodes, chosen);
   add_acquisition(*nodes, chosen);
   add_estimator(*nodes, chosen);
   add_evaluator(*nodes, chosen);
   add_recorder(*nodes, chosen);
+  nodes->footer(kSession);  // last, or each node's help would end with it too
 }
 
 }  // namespace waverig::cli

@@ -1,4 +1,5 @@
-// What every message of waverig begins with, read from its bytes: fingerprint, int64_t utime, int64_t seq, big-endian.
+// What every message of waverig begins with, read from its bytes: fingerprint, int64_t utime, int64_t seq,
+// big-endian.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -6,7 +7,7 @@
 namespace waverig::rig {
 
 struct MessageHead {
-  std::int64_t utime = 0, seq = 0;   // 0 where the message is too short to hold them
+  std::int64_t utime = 0, seq = 0;  // 0 where the message is too short to hold them
 };
 
 inline MessageHead head_of(const void* data, std::size_t size) {

@@ -14,7 +14,7 @@
 namespace waverig::rig {
 namespace {
 
-constexpr std::int32_t kMotionStops = 2;   // severity, alarm_t.lcm
+constexpr std::int32_t kMotionStops = 2;  // severity, alarm_t.lcm
 
 // One line for a terminal, whoever wrote it.
 std::string text_of(const alarm_t& m) {
@@ -40,9 +40,10 @@ RunWatch::RunWatch(Bus& bus) {
   });
   bus.subscribe<axis_t>(channel::kAxis, [this](const axis_t&) { ++axis_messages_; });
   for (const auto prefix : {channel::kHeavePrefix, channel::kWavePrefix, channel::kSeaPrefix})
-    bus.subscribe_raw(escaped_channel(prefix) + ".+", [this](std::string_view, const void* data, std::size_t size) {
-      if (begun_ && (!ended_ || head_of(data, size).utime <= end_utime_)) ++estimates_;
-    });
+    bus.subscribe_raw(escaped_channel(prefix) + ".+",
+                      [this](std::string_view, const void* data, std::size_t size) {
+                        if (begun_ && (!ended_ || head_of(data, size).utime <= end_utime_)) ++estimates_;
+                      });
 }
 
 }  // namespace waverig::rig

@@ -7,8 +7,8 @@ namespace waverig::rig {
 
 class SequenceWatch {
  public:
-  // How many messages are missing just before this one. A seq that does not grow begins a new count, from 0; what went
-  // before the first message heard is not missing.
+  // How many messages are missing just before this one. A seq that does not grow begins a new count, from 0;
+  // what went before the first message heard is not missing.
   std::int64_t missing_before(std::int64_t seq) {
     seq = std::max<std::int64_t>(seq, 0);
     anew_ = !heard_ || seq <= last_seq_;
@@ -18,8 +18,8 @@ class SequenceWatch {
     missing_ += missing;
     return missing;
   }
-  bool anew() const { return anew_; }                 // the last message began a count, or was the first heard
-  std::int64_t missing() const { return missing_; }   // in all
+  bool anew() const { return anew_; }                // the last message began a count, or was the first heard
+  std::int64_t missing() const { return missing_; }  // in all
 
  private:
   bool heard_ = false, anew_ = false;

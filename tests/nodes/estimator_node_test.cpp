@@ -18,7 +18,8 @@ namespace {
 class Samples {
  public:
   Samples() : node_(bus_, "realtime", {}) {
-    bus_.subscribe<heave_t>(channel::of_method(channel::kHeavePrefix, "realtime"), [this](const heave_t& m) { heave.push_back(m); });
+    bus_.subscribe<heave_t>(channel::of_method(channel::kHeavePrefix, "realtime"),
+                            [this](const heave_t& m) { heave.push_back(m); });
   }
   void record(RecordAction action) {
     record_t m{};
@@ -68,7 +69,7 @@ TEST(EstimatorNode, LeavesOutWhatStillGoesOnWithTheOldCount) {
   Samples samples;
   samples.send(40, 60);
   samples.record(RecordAction::kBegin);
-  samples.send(60, 62);   // the acquisition has not heard of the record yet
+  samples.send(60, 62);  // the acquisition has not heard of the record yet
   samples.send(0, 100);
   samples.record(RecordAction::kEnd);
   ASSERT_EQ(samples.heave.size(), 100u);

@@ -1,5 +1,6 @@
-// The nodes as processes, on the transports of the laboratory: Modbus TCP, a pseudo-terminal, UDP multicast. In real
-// time on a machine that may be busy: patience is generous, and nothing is asserted of how fast anything was.
+// The nodes as processes, on the transports of the laboratory: Modbus TCP, a pseudo-terminal, UDP multicast.
+// In real time on a machine that may be busy: patience is generous, and nothing is asserted of how fast
+// anything was.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,13 +25,15 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr const char* kCampaign =
-    "name = \"short\"\n[sweep]\nperiods_s = [4.0]\nheights_cm = [50.0]\nduration_s = 16.0\nrepeats = 1\nramp_periods = 1\n"
+    "name = \"short\"\n[sweep]\nperiods_s = [4.0]\nheights_cm = [50.0]\nduration_s = 16.0\nrepeats = "
+    "1\nramp_periods = 1\n"
     "rest_before_s = 3.0\n[calibration]\nenabled = false\n";
 constexpr const char* kRun = "T04.00s_H050.0cm_r1";
 
 // A port of this test's own: LCM on one port hears every group.
 std::string bus_url() {
-  return "udpm://239.255.76.67:" + std::to_string(20000 + ::getpid() % 20000) + "?ttl=0&recv_buf_size=4194304";
+  return "udpm://239.255.76.67:" + std::to_string(20000 + ::getpid() % 20000) +
+         "?ttl=0&recv_buf_size=4194304";
 }
 
 bool multicast_reaches_this_machine() {
@@ -65,8 +68,8 @@ class Laboratory : public ::testing::Test {
     return std::make_unique<Process>(temporary_, name, command);
   }
   std::unique_ptr<Process> rig_sim() {
-    auto rig = node("rig-sim", {"rig-sim", path("short.toml"), "--run", kRun, "--port", "0", "--serial-link", path("line"),
-                                "--watchdog-ms", "1500"});
+    auto rig = node("rig-sim", {"rig-sim", path("short.toml"), "--run", kRun, "--port", "0", "--serial-link",
+                                path("line"), "--watchdog-ms", "1500"});
     EXPECT_TRUE(rig->says("serial ", 30s)) << rig->err();
     return rig;
   }
@@ -74,8 +77,9 @@ class Laboratory : public ::testing::Test {
   std::unique_ptr<Process> motion(const Process& rig) {
     const std::string out = rig.out();
     const std::size_t at = out.find("tcp://");
-    return node("motion", {"motion", path("short.toml"), "--run", kRun, "--drive", out.substr(at, out.find('\n') - at),
-                           "--max-cycle-gap-ms", "1000", "--response-timeout-ms", "400", "--max-following-error-deg", "40"});
+    return node("motion", {"motion", path("short.toml"), "--run", kRun, "--drive",
+                           out.substr(at, out.find('\n') - at), "--max-cycle-gap-ms", "1000",
+                           "--response-timeout-ms", "400", "--max-following-error-deg", "40"});
   }
 
   TemporaryDirectory temporary_;
@@ -90,11 +94,12 @@ double mean_height_m(const evaluation::CampaignResults& results, const std::stri
 TEST_F(Laboratory, WholeRunFromDriveToResultsAndSomeoneElsesProgramIsJudgedToo) {
   auto rig = rig_sim();
   auto acquisition = node("acquisition", {"acquisition", path("short.toml"), "--serial", path("line")});
-  auto harmonic = node("harmonic", {"estimator", "harmonic", "--campaign", path("short.toml"), "--one-record"});
+  auto harmonic =
+      node("harmonic", {"estimator", "harmonic", "--campaign", path("short.toml"), "--one-record"});
   auto realtime = node("realtime", {"estimator", "realtime", "--one-record"});
   auto recorder = node("recorder", {"recorder", "--out", path("run.lcm"), "--one-record"});
-  auto evaluator =
-      node("evaluator", {"evaluator", "--run", kRun, "--out", path("results"), "--campaign", path("short.toml")});
+  auto evaluator = node(
+      "evaluator", {"evaluator", "--run", kRun, "--out", path("results"), "--campaign", path("short.toml")});
   for (auto* each : {&acquisition, &harmonic, &realtime, &recorder, &evaluator})
     ASSERT_TRUE((*each)->says("ready", 60s)) << (*each)->err();
   Process outsider(temporary_, "outsider", {WAVERIG_OUTSIDER, bus_url(), "1.1"});
@@ -173,7 +178,8 @@ TEST_F(Laboratory, KilledMotionNodeLeavesTheDriveStoppedAndNothingIsJudged) {
 
 TEST_F(Laboratory, ToldToStopMotionStopsTheDriveAndSaysSo) {
   auto rig = rig_sim();
-  auto evaluator = node("evaluator", {"evaluator", "--run", kRun, "--out", path("results"), "--quiet-s", "0.2"});
+  auto evaluator =
+      node("evaluator", {"evaluator", "--run", kRun, "--out", path("results"), "--quiet-s", "0.2"});
   ASSERT_TRUE(evaluator->says("ready", 60s)) << evaluator->err();
   Bus bus(bus_url());
   Watcher arm(bus);
@@ -235,14 +241,16 @@ TEST_F(Laboratory, BadAddressesAndMissingDevicesAreOneSentenceAndExitTwo) {
     EXPECT_NE(err.find(complaint), std::string::npos) << err;
     EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << err;
   };
-  for (const char* url : {"memq://", "udpm://elsewhere:7667", "udpm://239.255.76.67", "udpm://10.0.0.1:7667", "http://a",
-                          "udpm://239.255.76.67:99999", "udpm://239.255.76.67:7667?tll=0", "udpm://239.255.76.67:7667?ttl=x", ""})
+  for (const char* url : {"memq://", "udpm://elsewhere:7667", "udpm://239.255.76.67", "udpm://10.0.0.1:7667",
+                          "http://a", "udpm://239.255.76.67:99999", "udpm://239.255.76.67:7667?tll=0",
+                          "udpm://239.255.76.67:7667?ttl=x", ""})
     refuses({"estimator", "harmonic", "--bus", url}, "--bus");
   refuses({"estimator", "nobodys", "--bus", bus_url()}, "nobodys");
   refuses({"acquisition", campaign, "--serial", path("none"), "--bus", bus_url()}, "none");
   refuses({"acquisition", campaign, "--serial", campaign, "--bus", bus_url()}, "short.toml");
   refuses({"rig-sim", campaign, "--run", "T1", "--bus", bus_url()}, kRun);
-  refuses({"motion", campaign, "--run", kRun, "--drive", "tcp://127.0.0.1:1", "--bus", bus_url()}, "127.0.0.1:1");
+  refuses({"motion", campaign, "--run", kRun, "--drive", "tcp://127.0.0.1:1", "--bus", bus_url()},
+          "127.0.0.1:1");
   refuses({"motion", campaign, "--run", kRun, "--drive", "can0", "--bus", bus_url()}, "--drive can0");
   refuses({"motion", campaign, "--run", kRun, "--drive", "rtu:" + path("none"), "--bus", bus_url()}, "none");
   refuses({"recorder", "--out", path("no/such/place.lcm"), "--bus", bus_url()}, "no/such/place.lcm");
@@ -252,7 +260,8 @@ TEST_F(Laboratory, BadAddressesAndMissingDevicesAreOneSentenceAndExitTwo) {
 TEST_F(Laboratory, MissingMulticastRouteIsOneSentenceAndExitTwo) {
   Process possible(temporary_, "possible", {"/usr/bin/unshare", "-rn", "/bin/true"});
   if (possible.wait(30s) != 0) GTEST_SKIP() << "this user may not make a network namespace";
-  Process process(temporary_, "alone", {"/usr/bin/unshare", "-rn", WAVERIG_PROGRAM, "node", "estimator", "harmonic"});
+  Process process(temporary_, "alone",
+                  {"/usr/bin/unshare", "-rn", WAVERIG_PROGRAM, "node", "estimator", "harmonic"});
   EXPECT_EQ(process.wait(60s), 2);
   EXPECT_NE(process.err().find("multicast route"), std::string::npos) << process.err();
 }

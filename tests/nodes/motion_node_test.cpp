@@ -17,7 +17,8 @@ namespace waverig::rig {
 namespace {
 
 constexpr std::int64_t kPeriod_us = 10000;
-constexpr motion::ProfileSettings kProfile{.period_s = 4, .steady_s = 40, .ramp_periods = 1, .rest_before_s = 1, .rest_after_s = 1};
+constexpr motion::ProfileSettings kProfile{
+    .period_s = 4, .steady_s = 40, .ramp_periods = 1, .rest_before_s = 1, .rest_after_s = 1};
 
 // A motion node, the simulated drive and all that they say, in virtual time.
 class Laboratory {
@@ -58,7 +59,8 @@ TEST(MotionNode, AnnouncesAHeldSpanAsHeldAndTheRestAsSteadyAgain) {
   laboratory.run_until(25);
   ASSERT_EQ(laboratory.last_phase(), Phase::kHeld);
   EXPECT_NEAR(laboratory.drive().shaft().rate_radps, 0, 1e-3) << "it really stands";
-  EXPECT_NEAR(1e-6 * static_cast<double>(laboratory.phases.back().utime), 15, 5) << "announced when it began, not when it stood";
+  EXPECT_NEAR(1e-6 * static_cast<double>(laboratory.phases.back().utime), 15, 5)
+      << "announced when it began, not when it stood";
   laboratory.node().resume();
   laboratory.run_until(40);
   EXPECT_EQ(laboratory.last_phase(), Phase::kSteady);

@@ -1,5 +1,6 @@
-// Someone else's program: it knows LCM and the message types, nothing of waverig. Its "method" hears the truth, which no
-// honest one does, so that a test knows what must come out: a heave that is too large by a known gain.
+// Someone else's program: it knows LCM and the message types, nothing of waverig. Its "method" hears the
+// truth, which no honest one does, so that a test knows what must come out: a heave that is too large by a
+// known gain.
 //   outsider BUS GAIN
 #include <cstdlib>
 #include <lcm/lcm-cpp.hpp>

@@ -33,7 +33,8 @@ bool eventually(Condition condition, Seconds patience) {
 class Process {
  public:
   // stdout and stderr go to files of that name in the directory.
-  Process(const TemporaryDirectory& directory, const std::string& name, const std::vector<std::string>& command)
+  Process(const TemporaryDirectory& directory, const std::string& name,
+          const std::vector<std::string>& command)
       : out_(directory / (name + ".out")), err_(directory / (name + ".err")) {
     std::vector<char*> arguments;
     for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
@@ -75,7 +76,8 @@ class Process {
     return eventually([this] { return !running(); }, patience) ? *status_ : -1;
   }
   bool says(const std::string& text, Seconds patience) {
-    return eventually([&] { return (out() + err()).find(text) != std::string::npos || !running(); }, patience) &&
+    return eventually([&] { return (out() + err()).find(text) != std::string::npos || !running(); },
+                      patience) &&
            (out() + err()).find(text) != std::string::npos;
   }
   std::string out() const { return bytes_of(out_); }

@@ -32,7 +32,8 @@ TEST(SequenceWatch, IsNotHarmedByNonsense) {
   SequenceWatch watch;
   watch.missing_before(std::numeric_limits<std::int64_t>::min());
   EXPECT_EQ(watch.missing(), 0);
-  EXPECT_EQ(watch.missing_before(std::numeric_limits<std::int64_t>::max()), std::numeric_limits<std::int64_t>::max() - 1);
+  EXPECT_EQ(watch.missing_before(std::numeric_limits<std::int64_t>::max()),
+            std::numeric_limits<std::int64_t>::max() - 1);
   EXPECT_EQ(watch.missing_before(-5), 0);
 }
 

@@ -14,13 +14,14 @@
 namespace waverig::cli {
 namespace {
 
-constexpr int kTick_ms = 5;   // the begin of a record is heard so late at the most
+constexpr int kTick_ms = 5;  // the begin of a record is heard so late at the most
 
 // Says so at the first frame that is lost or broken, and how many there were at the end.
 void report_loss(const rig::FrameStatistics& statistics, std::int64_t& reported) {
   const std::int64_t bad = statistics.lost + statistics.broken;
   if (bad > 0 && reported == 0)
-    fmt::print(stderr, "acquisition: {} frames lost, {} broken on the serial line\n", statistics.lost, statistics.broken);
+    fmt::print(stderr, "acquisition: {} frames lost, {} broken on the serial line\n", statistics.lost,
+               statistics.broken);
   reported = bad;
 }
 

@@ -15,13 +15,15 @@ namespace waverig::cli {
 namespace {
 
 [[noreturn]] void refuse_bus(const std::string& url, const std::string& why) {
-  throw UserError(fmt::format("--bus {}: {}; expected udpm://GROUP:PORT?ttl=N&recv_buf_size=BYTES, such as \"{}\"", url, why,
-                              kDefaultBus));
+  throw UserError(
+      fmt::format("--bus {}: {}; expected udpm://GROUP:PORT?ttl=N&recv_buf_size=BYTES, such as \"{}\"", url,
+                  why, kDefaultBus));
 }
 
 // -1 where the text is no number up to largest.
 long number(const std::string& text, long largest) {
-  if (text.empty() || text.size() > 10 || text.find_first_not_of("0123456789") != std::string::npos) return -1;
+  if (text.empty() || text.size() > 10 || text.find_first_not_of("0123456789") != std::string::npos)
+    return -1;
   const long value = std::stol(text);
   return value <= largest ? value : -1;
 }
@@ -37,14 +39,16 @@ void check_arguments(const std::string& url, const std::string& arguments) {
     const bool good = match[1] == "ttl"             ? number(match[2], 255) >= 0
                       : match[1] == "recv_buf_size" ? number(match[2], 1L << 30) > 0
                                                     : false;
-    if (!good) refuse_bus(url, fmt::format("\"{}\" = \"{}\" is no argument of it", match[1].str(), match[2].str()));
+    if (!good)
+      refuse_bus(url, fmt::format("\"{}\" = \"{}\" is no argument of it", match[1].str(), match[2].str()));
     at += static_cast<std::size_t>(match.length());
   }
 }
 
 void check_route(const std::string& url, const sockaddr_in& group) {
   const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool reachable = probe >= 0 && ::connect(probe, reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0;
+  const bool reachable =
+      probe >= 0 && ::connect(probe, reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0;
   const int reason = errno;
   if (probe >= 0) ::close(probe);
   if (!reachable)
@@ -66,8 +70,10 @@ Bus open_bus(const std::string& url) {
   group.sin_family = AF_INET;
   group.sin_port = htons(static_cast<std::uint16_t>(port));
   if (port < 1) refuse_bus(url, fmt::format("\"{}\" is no port", match[2].str()));
-  if (inet_pton(AF_INET, match[1].str().c_str(), &group.sin_addr) != 1 || !IN_MULTICAST(ntohl(group.sin_addr.s_addr)))
-    refuse_bus(url, fmt::format("\"{}\" is no multicast group (224.0.0.0 to 239.255.255.255)", match[1].str()));
+  if (inet_pton(AF_INET, match[1].str().c_str(), &group.sin_addr) != 1 ||
+      !IN_MULTICAST(ntohl(group.sin_addr.s_addr)))
+    refuse_bus(url,
+               fmt::format("\"{}\" is no multicast group (224.0.0.0 to 239.255.255.255)", match[1].str()));
   check_arguments(url, match[4]);
   check_route(url, group);
   return Bus(url);
@@ -82,12 +88,14 @@ motion::ModbusLinkSettings drive_link(const std::string& address) {
     return link;
   }
   in_addr host{};
-  const bool tcp = std::regex_match(address, match, kTcp) && inet_pton(AF_INET, match[1].str().c_str(), &host) == 1;
+  const bool tcp =
+      std::regex_match(address, match, kTcp) && inet_pton(AF_INET, match[1].str().c_str(), &host) == 1;
   const long port = tcp ? number(match[2], 65535) : -1;
   if (port < 1)
-    throw UserError(fmt::format("--drive {}: no such address; expected tcp://ADDRESS:PORT, such as tcp://127.0.0.1:5020, "
-                                "or rtu:DEVICE, such as rtu:/dev/ttyUSB0",
-                                address));
+    throw UserError(
+        fmt::format("--drive {}: no such address; expected tcp://ADDRESS:PORT, such as tcp://127.0.0.1:5020, "
+                    "or rtu:DEVICE, such as rtu:/dev/ttyUSB0",
+                    address));
   link.host = match[1];
   link.port = static_cast<int>(port);
   return link;

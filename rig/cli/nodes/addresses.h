@@ -9,8 +9,8 @@ namespace waverig::cli {
 
 inline constexpr const char* kDefaultBus = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
-// udpm://GROUP:PORT?ttl=N&recv_buf_size=BYTES. Throws UserError where it is none, or where this machine has no way to
-// the group.
+// udpm://GROUP:PORT?ttl=N&recv_buf_size=BYTES. Throws UserError where it is none, or where this machine has
+// no way to the group.
 Bus open_bus(const std::string& url);
 
 // tcp://ADDRESS:PORT or rtu:DEVICE. Throws UserError.

@@ -36,11 +36,12 @@ int run_estimator(const EstimatorArguments& arguments) {
   while (requests.next() != Request::kStop && !(arguments.one_record && node.records() > 0)) {
     bus.handle(kTick_ms);
     if (reported == 0 && node.samples_missing() > 0)
-      fmt::print(stderr, "estimator {}: samples are missing, what follows them is flagged\n", arguments.method);
+      fmt::print(stderr, "estimator {}: samples are missing, what follows them is flagged\n",
+                 arguments.method);
     reported = node.samples_missing();
   }
-  fmt::print(stderr, "estimator {}: {} records, {} samples, {} missing{}\n", arguments.method, node.records(), node.samples(),
-             node.samples_missing(), node.recording() ? "; stopped inside a record" : "");
+  fmt::print(stderr, "estimator {}: {} records, {} samples, {} missing{}\n", arguments.method, node.records(),
+             node.samples(), node.samples_missing(), node.recording() ? "; stopped inside a record" : "");
   return 0;
 }
 

@@ -23,14 +23,17 @@ namespace fs = std::filesystem;
 rig::ResultsDirectory new_directory(const EvaluatorArguments& arguments) {
   const fs::path out(arguments.out);
   if (!arguments.replace && fs::exists(out) && !fs::is_empty(out))
-    throw UserError(fmt::format("--out {}: is there already; expected a new directory, or --replace to do it anew", arguments.out));
+    throw UserError(fmt::format(
+        "--out {}: is there already; expected a new directory, or --replace to do it anew", arguments.out));
   return {out, rig::ResultsDirectory::Mode::kReplace};
 }
 
 void refuse_unless_whole(Ending ending, const rig::RunWatch& watch, const std::string& run) {
-  if (!watch.stopped().empty()) throw NegativeAnswer(fmt::format("run {}: nothing judged: the motion: {}", run, watch.stopped()));
+  if (!watch.stopped().empty())
+    throw NegativeAnswer(fmt::format("run {}: nothing judged: the motion: {}", run, watch.stopped()));
   if (ending == Ending::kMotionSilent)
-    throw NegativeAnswer(fmt::format("run {}: nothing judged: the motion node fell silent inside the record", run));
+    throw NegativeAnswer(
+        fmt::format("run {}: nothing judged: the motion node fell silent inside the record", run));
   if (ending == Ending::kToldToStop)
     throw NegativeAnswer(fmt::format("run {}: nothing judged: stopped before the end of the record", run));
   if (watch.estimates() == 0)
@@ -46,7 +49,7 @@ int run_evaluator(const EvaluatorArguments& arguments) {
   results.name = arguments.run;
   if (!arguments.campaign.empty()) {
     const rig::Campaign campaign = rig::read_campaign(arguments.campaign);
-    chosen_run(arguments.campaign, arguments.run);   // refused now, not after the run
+    chosen_run(arguments.campaign, arguments.run);  // refused now, not after the run
     judging = rig::judge_settings(unit_on_the_rig(campaign.settings, {}));
     results.seed = campaign.settings.seed;
     results.name = campaign.settings.name;
@@ -61,7 +64,8 @@ int run_evaluator(const EvaluatorArguments& arguments) {
   rig::EvaluatorNode node(bus, arguments.run, judging);
   fmt::print(stderr, "evaluator: ready\n");
   const Ending ending = listen_to_record(bus, requests, watch, arguments.quiet_s);
-  if (node.truths_missing() > 0) fmt::print(stderr, "evaluator: {} messages of the truth were lost on the bus\n", node.truths_missing());
+  if (node.truths_missing() > 0)
+    fmt::print(stderr, "evaluator: {} messages of the truth were lost on the bus\n", node.truths_missing());
   refuse_unless_whole(ending, watch, arguments.run);
 
   results.version = kVersion;

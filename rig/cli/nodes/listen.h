@@ -8,9 +8,9 @@ namespace waverig::cli {
 
 enum class Ending { kToldToStop, kRecordOver, kMotionSilent };
 
-// Handles messages until a stop is asked for; or until the first record has ended and no estimate came for quiet_s since
-// (methods that look at the whole record answer after its end), a minute at the most; or until the motion node says
-// nothing for five seconds inside a record.
+// Handles messages until a stop is asked for; or until the first record has ended and no estimate came for
+// quiet_s since (methods that look at the whole record answer after its end), a minute at the most; or until
+// the motion node says nothing for five seconds inside a record.
 Ending listen_to_record(Bus& bus, Requests& requests, const rig::RunWatch& watch, double quiet_s);
 
 }  // namespace waverig::cli

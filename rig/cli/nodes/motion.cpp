@@ -1,5 +1,5 @@
-// waverig node motion: one run of the arm in real time, through a drive on Modbus. Every way out stops the drive; where
-// the process itself is killed, the drive's own watchdog does.
+// waverig node motion: one run of the arm in real time, through a drive on Modbus. Every way out stops the
+// drive; where the process itself is killed, the drive's own watchdog does.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,8 @@ int run_motion(const MotionArguments& arguments) {
   if (!become_real_time())
     fmt::print(stderr, "motion: no real-time scheduling for this user: a busy machine may miss a deadline\n");
 
-  rig::MotionNode node(bus, drive, axis, rig::profile_of(chosen.campaign, chosen.plan), rig::ordered_run(chosen.plan));
+  rig::MotionNode node(bus, drive, axis, rig::profile_of(chosen.campaign, chosen.plan),
+                       rig::ordered_run(chosen.plan));
   bool told_to_stop = false;
   std::int64_t tick = clock.now();
   while (!(node.finished() && node.at_rest())) {
@@ -65,8 +66,10 @@ int run_motion(const MotionArguments& arguments) {
     clock.sleep_until(tick);
   }
   if (!node.alarm().empty())
-    throw NegativeAnswer(fmt::format("run {}: motion stopped by an alarm: {}", chosen.plan.name, node.alarm()));
-  if (told_to_stop) throw NegativeAnswer(fmt::format("run {}: motion stopped before its end, as told", chosen.plan.name));
+    throw NegativeAnswer(
+        fmt::format("run {}: motion stopped by an alarm: {}", chosen.plan.name, node.alarm()));
+  if (told_to_stop)
+    throw NegativeAnswer(fmt::format("run {}: motion stopped before its end, as told", chosen.plan.name));
   fmt::print(stderr, "motion: {} done, largest following error {:.3f} deg\n", chosen.plan.name,
              node.status().peak_following_error_rad / kDegree);
   return 0;

@@ -1,5 +1,5 @@
-// The nodes of the laboratory, each a process of its own: what the command line tells them, and what they do until they
-// end. Each returns the exit status.
+// The nodes of the laboratory, each a process of its own: what the command line tells them, and what they do
+// until they end. Each returns the exit status.
 #pragma once
 #include <optional>
 #include <string>

@@ -23,7 +23,7 @@ Requests::Requests() : taken_{} {
   sigemptyset(&taken_);
   for (const int each : {SIGINT, SIGTERM, SIGUSR1, SIGUSR2}) sigaddset(&taken_, each);
   sigset_t blocked = taken_;
-  sigaddset(&blocked, SIGPIPE);   // a reader that is gone shows as an error of the write
+  sigaddset(&blocked, SIGPIPE);  // a reader that is gone shows as an error of the write
   pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
 }
 
@@ -43,10 +43,12 @@ Request Requests::next() {
 }
 
 RigClock::RigClock(std::int64_t epoch_utime, double speed) : speed_(speed) {
-  // Both clocks at one moment: the best of some tries, since a process may lose the processor between two readings.
+  // Both clocks at one moment: the best of some tries, since a process may lose the processor between two
+  // readings.
   std::int64_t real_ns = 0, best_ns = std::numeric_limits<std::int64_t>::max();
   for (int i = 0; i < 20; ++i) {
-    const std::int64_t before = read_ns(CLOCK_MONOTONIC), real = read_ns(CLOCK_REALTIME), after = read_ns(CLOCK_MONOTONIC);
+    const std::int64_t before = read_ns(CLOCK_MONOTONIC), real = read_ns(CLOCK_REALTIME),
+                       after = read_ns(CLOCK_MONOTONIC);
     if (after - before >= best_ns) continue;
     best_ns = after - before;
     real_ns = real;
@@ -62,7 +64,8 @@ std::int64_t RigClock::now() const {
 }
 
 void RigClock::sleep_until(std::int64_t utime) const {
-  const std::int64_t at_ns = begin_steady_ns_ + std::llround(1e3 * static_cast<double>(utime - begin_utime_) / speed_);
+  const std::int64_t at_ns =
+      begin_steady_ns_ + std::llround(1e3 * static_cast<double>(utime - begin_utime_) / speed_);
   const timespec at{.tv_sec = at_ns / 1000000000, .tv_nsec = at_ns % 1000000000};
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr);
 }

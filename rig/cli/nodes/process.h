@@ -1,4 +1,5 @@
-// What a node's process needs of the operating system: requests by signal, the rig's time, a place in the queue.
+// What a node's process needs of the operating system: requests by signal, the rig's time, a place in the
+// queue.
 #pragma once
 #include <signal.h>
 
@@ -8,19 +9,20 @@ namespace waverig::cli {
 
 enum class Request { kNone, kStop, kHold, kResume };
 
-// Takes SIGINT and SIGTERM (stop), SIGUSR1 (hold) and SIGUSR2 (resume) as requests that are asked for, so that no call
-// is interrupted and every way out is an ordinary one. To be made before any thread is; for the rest of the process.
+// Takes SIGINT and SIGTERM (stop), SIGUSR1 (hold) and SIGUSR2 (resume) as requests that are asked for, so
+// that no call is interrupted and every way out is an ordinary one. To be made before any thread is; for the
+// rest of the process.
 class Requests {
  public:
   Requests();
-  Request next();   // without waiting
+  Request next();  // without waiting
 
  private:
   sigset_t taken_;
 };
 
-// The rig's time, microseconds: the machine's, from which it departs only where a simulated rig runs at another speed
-// than 1. Processes with the same epoch and speed agree. Never runs back.
+// The rig's time, microseconds: the machine's, from which it departs only where a simulated rig runs at
+// another speed than 1. Processes with the same epoch and speed agree. Never runs back.
 class RigClock {
  public:
   RigClock(std::int64_t epoch_utime, double speed);

@@ -1,4 +1,5 @@
-// PseudoTerminal: the sensor unit's end of a serial line that is none: whoever opens path() finds a serial port.
+// PseudoTerminal: the sensor unit's end of a serial line that is none: whoever opens path() finds a serial
+// port.
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -22,14 +22,16 @@ void record(Bus& bus, Requests& requests, const rig::RunWatch& watch, const Reco
   } else {
     while (requests.next() != Request::kStop) bus.handle(kTick_ms);
   }
-  for (int i = 0; i < kMostWaiting && bus.handle(0); ++i) continue;   // what was sent before the end is in the log
+  for (int i = 0; i < kMostWaiting && bus.handle(0); ++i)
+    continue;  // what was sent before the end is in the log
 }
 
 }  // namespace
 
 int run_recorder(const RecorderArguments& arguments) {
   if (!arguments.replace && std::filesystem::exists(arguments.out))
-    throw UserError(fmt::format("--out {}: is there already; expected a new file, or --replace", arguments.out));
+    throw UserError(
+        fmt::format("--out {}: is there already; expected a new file, or --replace", arguments.out));
   Requests requests;
   Bus bus = open_bus(arguments.bus);
   rig::RecorderNode node(bus, arguments.out);

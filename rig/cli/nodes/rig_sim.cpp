@@ -1,5 +1,5 @@
-// waverig node rig-sim: drive, mechanism, sensors and front end in real time. Outside it is what hardware is: a drive on
-// Modbus TCP and a serial line with frames; the truth goes to the bus for the evaluator.
+// waverig node rig-sim: drive, mechanism, sensors and front end in real time. Outside it is what hardware is:
+// a drive on Modbus TCP and a serial line with frames; the truth goes to the bus for the evaluator.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -29,14 +29,16 @@ int run_rig_sim(const RigSimArguments& arguments) {
 
   rig::CampaignUnit unit;
   unit.settings = rig::unit_settings(campaign);
-  unit.settings.power_up_utime = start_utime - (chosen.plan.start_utime - campaign.start_utime);   // as warm as embedded
+  unit.settings.power_up_utime =
+      start_utime - (chosen.plan.start_utime - campaign.start_utime);  // as warm as embedded
   unit.tested = rig::tested_unit(campaign);
   rig::SimulatedRigSettings settings = rig::rig_settings(campaign, unit, chosen.plan);
   settings.drive.watchdog_s = 1e-3 * arguments.watchdog_ms;
   rig::SimulatedRig rig(bus, settings, unit.tested, start_utime);
   PseudoTerminal line(arguments.serial_link);
 
-  // The server asks for the time before each answer: the moment to bring the whole rig up to it, not the drive alone.
+  // The server asks for the time before each answer: the moment to bring the whole rig up to it, not the
+  // drive alone.
   const auto catch_up = [&]() -> std::int64_t {
     line.send(rig.advance_to(clock.now()));
     return 0;
