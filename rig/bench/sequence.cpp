@@ -46,7 +46,7 @@ std::map<std::string, std::string> all_texts(TomlTable table) {
   return fields;
 }
 
-RawStep read_step(TomlTable& table) {
+RawStep read_step(TomlTable& table, int retries) {
   RawStep step;
   step.place = table.place_of("");
   for (const char* key : {"set", "read", "wait", "until", "prompt", "for", "do", "value", "near", "within", "hold", "poll",
@@ -59,7 +59,7 @@ RawStep read_step(TomlTable& table) {
   if (table.has("channels")) step.channels = table.texts("channels", {});
   if (table.has("in")) step.in = table.texts("in", {});
   step.count = static_cast<int>(table.integer("count", 0, {0, 1e6}));
-  step.retries = static_cast<int>(table.integer("retries", 0, {0, 100}));
+  step.retries = static_cast<int>(table.integer("retries", retries, {0, 100}));
   step.join = table.boolean("join", false);
   step.keep = table.boolean("keep", false);
   for (TomlTable& limit : table.tables("limits")) step.limits.push_back(all_texts(limit));
@@ -67,9 +67,9 @@ RawStep read_step(TomlTable& table) {
   return step;
 }
 
-std::vector<RawStep> read_steps(TomlTable& table, std::string_view key) {
+std::vector<RawStep> read_steps(TomlTable& table, std::string_view key, int retries) {
   std::vector<RawStep> steps;
-  for (TomlTable& step : table.tables(key)) steps.push_back(read_step(step));
+  for (TomlTable& step : table.tables(key)) steps.push_back(read_step(step, retries));
   return steps;
 }
 
@@ -306,7 +306,7 @@ class Planner {
   Sequence& sequence_;
 };
 
-Document read_document(TomlTable& root) {
+Document read_document(TomlTable& root, int retries) {
   Document document;
   TomlTable lists = root.table("lists"), tables = root.table("tables");
   for (const std::string& name : lists.keys())
@@ -320,7 +320,7 @@ Document read_document(TomlTable& root) {
     }
   }
   TomlTable blocks = root.table("blocks");
-  for (const std::string& name : blocks.keys()) document.blocks[name] = read_steps(blocks, name);
+  for (const std::string& name : blocks.keys()) document.blocks[name] = read_steps(blocks, name, retries);
   return document;
 }
 
@@ -372,10 +372,11 @@ Sequence load_sequence(const std::filesystem::path& file) {
       if (channel != "temperature" && sequence.laboratory.unit.channel(channel) == nullptr)
         window.refuse("channels", "channels of the unit, or temperature");
   }
-  const Document document = read_document(root);
+  const int retries = static_cast<int>(root.integer("retries", 0, {0, 100}));   // where a step does not say
+  const Document document = read_document(root, retries);
   Planner planner(document, sequence);
   for (const auto& [key, section] : {std::pair{"setup", Section::kSetup}, {"steps", Section::kSteps}, {"teardown", Section::kTeardown}})
-    planner.unfold(read_steps(root, key), section, {}, "");
+    planner.unfold(read_steps(root, key, retries), section, {}, "");
   root.refuse_unknown_keys();
   if (sequence.plan.empty()) root.refuse("steps", "at least one step");
   if (sequence.duration_s > 0 && std::abs(sequence.expected_s() - sequence.duration_s) > kDurationTolerance * sequence.duration_s)

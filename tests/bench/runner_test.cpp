@@ -1,0 +1,210 @@
+// The bench over real transports in virtual time: whole runs, faults, and the safe end of each.
+#include "rig/bench/runner.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "lcmtypes/error.h"
+#include "rig/bench/bench.h"
+#include "rig/bench/simulation/simulated_laboratory.h"
+#include "tests/bench/short_sequence.h"
+
+namespace waverig::rig::bench {
+namespace {
+
+// A run in the open, so that the laboratory can be looked at afterwards.
+struct OpenRun {
+  ShortSequence files;
+  Sequence sequence;
+  VirtualTime time{1'704'067'200'000'000};
+  SimulatedLaboratory laboratory;
+  Reactor reactor{&time};
+  Store store;
+
+  explicit OpenRun(std::vector<Fault> faults = {}, const ShortSequence::Changes& changes = {}, const std::string& name = "scale_factor.toml")
+      : files(name, changes),
+        sequence(load_sequence(files.file())),
+        laboratory(SimulationSettings{{}, std::move(faults)}, sequence.laboratory, &time, time.now()),
+        store(Store::create((std::filesystem::create_directories(files.out()), store_file(files.out())),
+                            {sequence.title, sequence.procedure, "test", sequence.fingerprints, {}, time.now(), true, "running"})) {
+    sequence.laboratory = laboratory.addressed();
+  }
+  std::string run() {
+    Runner runner(sequence, reactor, store);
+    std::string outcome = runner.run(false);
+    reactor.sleep_until(reactor.now() + 5'000'000);
+    return outcome;
+  }
+  bool safe() const { return std::abs(laboratory.source_A()) < 1e-12 && laboratory.chamber_target_degC() == 23; }
+  std::vector<StepRow> failures() const {
+    std::vector<StepRow> rows = store.steps();
+    std::erase_if(rows, [](const StepRow& r) { return r.outcome == StepOutcome::kDone || r.outcome == StepOutcome::kMadeSafe; });
+    return rows;
+  }
+};
+
+constexpr double kHour = 3600;
+constexpr double kWhileMeasuring = 6700;   // the first temperature has settled and its settings are under way
+
+TEST(Runner, CarriesOutEveryPlannedStepOnceAndLeavesTheBenchSafe) {
+  OpenRun run;
+  EXPECT_EQ(run.run(), "done");
+  EXPECT_TRUE(run.safe());
+  const std::vector<StepRow> rows = run.store.steps();
+  ASSERT_EQ(rows.size(), run.sequence.plan.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].index, static_cast<int>(i));
+    EXPECT_EQ(rows[i].attempt, 1);
+  }
+  EXPECT_EQ(run.store.recordings().size(), 3U * (21 + 17));   // settings of Table 3 with their renewed zeros
+  EXPECT_EQ(run.store.info().instruments.size(), 16U);
+  const Analysis analysis = analyse(run.sequence, run.store);
+  ASSERT_EQ(analysis.calibration.channels.size(), 2U);
+  const UnitTruth truth = run.laboratory.unit_truth();
+  for (const auto& [channel, index] : {std::pair{"gyro_2", 1}, {"accel_1", 6}}) {
+    const ChannelTruth& t = truth.channels[static_cast<std::size_t>(index)];
+    const auto& found = analysis.calibration.channel(channel);
+    for (const double T : {5.0, 25.0, 45.0})   // 5 s instead of 100 s: a count is twenty times as coarse
+      EXPECT_NEAR(found.dsf_N.at(T + truth.thermometer_offset_degC), cubic_at(t.dsf_N, T), 150e-6) << channel;
+  }
+}
+
+TEST(Runner, KeepsEveryFrameOfAHundredHertzRecording) {
+  OpenRun run;
+  EXPECT_EQ(run.run(), "done");
+  for (const RecordingRow& row : run.store.recordings()) {
+    EXPECT_EQ(row.ticks, 500);
+    EXPECT_EQ(row.frames, 501);
+    EXPECT_EQ(row.lost, 0);
+  }
+}
+
+TEST(Runner, FramesBrokenAtFivePercentCostFramesButNoCharge) {
+  OpenRun clean, broken({{"counts", FaultType::kCorrupt, 0, 1e12, 0.05}});
+  EXPECT_EQ(clean.run(), "done");
+  EXPECT_EQ(broken.run(), "done");
+  const std::vector<RecordingRow> good = clean.store.recordings(), worse = broken.store.recordings();
+  ASSERT_EQ(good.size(), worse.size());
+  std::int64_t lost = 0, frames = 0;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    lost += worse[i].lost;
+    frames += worse[i].frames;
+    // The totals in the frames that did arrive hold the charge of those that did not.
+    const auto rate = [](const RecordingRow& r) {
+      return static_cast<double>(r.channels[0].N - r.channels[0].P) / static_cast<double>(r.ticks);
+    };
+    EXPECT_NEAR(rate(worse[i]), rate(good[i]), 2e-4 * std::abs(rate(good[i])) + 1) << i;
+  }
+  EXPECT_NEAR(static_cast<double>(lost) / static_cast<double>(lost + frames), 0.05, 0.01);
+}
+
+TEST(Runner, TooManyLostFramesAreRetriedAndThenEndTheRun) {
+  OpenRun run({{"counts", FaultType::kCorrupt, 0, 1e12, 0.3}});
+  const std::string outcome = run.run();
+  EXPECT_NE(outcome.find("counts: data lost"), std::string::npos) << outcome;
+  EXPECT_EQ(run.failures().size(), 4U);   // one attempt and three retries
+  EXPECT_TRUE(run.safe());
+}
+
+TEST(Runner, AHungInstrumentThatRecoversIsRetried) {
+  OpenRun run({{"calibrator", FaultType::kHang, kWhileMeasuring, kWhileMeasuring + 12, 0}});
+  EXPECT_EQ(run.run(), "done");
+  ASSERT_FALSE(run.failures().empty());
+  EXPECT_NE(run.failures().front().message.find("calibrator: no answer in time"), std::string::npos);
+}
+
+TEST(Runner, AnInstrumentThatHangsForGoodEndsTheRunByName) {
+  OpenRun run({{"switch", FaultType::kHang, kWhileMeasuring, 1e12, 0}});
+  const std::string outcome = run.run();
+  EXPECT_NE(outcome.find("switch: no answer in time"), std::string::npos) << outcome;
+  EXPECT_NE(outcome.find("scale_factor.toml:"), std::string::npos) << outcome;
+  EXPECT_TRUE(run.safe());
+}
+
+TEST(Runner, AGatewayCutForAShortTimeIsRiddenOut) {
+  OpenRun run({{"rack", FaultType::kDisappear, kWhileMeasuring, kWhileMeasuring + 10, 0}});
+  EXPECT_EQ(run.run(), "done");
+  ASSERT_FALSE(run.failures().empty());
+  EXPECT_NE(run.failures().front().message.find("connection lost"), std::string::npos) << run.failures().front().message;
+}
+
+TEST(Runner, AChamberThatNeverSettlesEndsTheRun) {
+  OpenRun run({{"chamber", FaultType::kHunt, 0, 1e12, 3.0}}, {{"timeout = \"6 h\"", "timeout = \"3 h\""}});
+  const std::string outcome = run.run();
+  EXPECT_NE(outcome.find("chamber: no answer in time: temperature"), std::string::npos) << outcome;
+  EXPECT_TRUE(run.safe());
+}
+
+TEST(Runner, AnOutOfRangeReadingEndsTheRunBeforeAnythingElse) {
+  OpenRun run({{"supply", FaultType::kWrong, 0, 1e12, 99.0}});
+  const std::string outcome = run.run();
+  EXPECT_NE(outcome.find("supply: out of range: voltage = 99 V"), std::string::npos) << outcome;
+  EXPECT_TRUE(run.store.recordings().empty());
+}
+
+TEST(Runner, AnInstrumentsErrorQueueIsHeard) {
+  OpenRun run({{"calibrator", FaultType::kError, kWhileMeasuring, 1e12, 0}});
+  const std::string outcome = run.run();
+  EXPECT_NE(outcome.find("calibrator: error reported: -300"), std::string::npos) << outcome;
+}
+
+TEST(Runner, AMissingInstrumentIsNamedBeforeTheFirstCommand) {
+  OpenRun run({{"dmm_reference", FaultType::kDisappear, 0, 1e12, 0}});
+  const std::string outcome = run.run();
+  EXPECT_NE(outcome.find("dmm_reference: no answer in time"), std::string::npos) << outcome;
+  EXPECT_TRUE(run.store.recordings().empty());
+}
+
+TEST(Runner, ASilentUnitIsNoticed) {
+  OpenRun run({{"counts", FaultType::kSilent, kWhileMeasuring, 1e12, 0}});
+  EXPECT_NE(run.run().find("counts: data lost"), std::string::npos);
+}
+
+TEST(Runner, StoppedByTheUserItEndsSafely) {
+  OpenRun run;
+  std::atomic<bool> stop{false};
+  Reactor reactor(&run.time, &stop);
+  RunnerHooks hooks;
+  int steps = 0;
+  hooks.progress = [&](const Progress&) { stop = ++steps == 60; };
+  hooks.clear_stop = [&] { stop = false; };
+  Runner runner(run.sequence, reactor, run.store, hooks);
+  EXPECT_EQ(runner.run(false), "stopped by the user");
+  reactor.sleep_until(reactor.now() + 5'000'000);
+  EXPECT_TRUE(run.safe());
+}
+
+TEST(Sequence, RefusesWhatCannotWorkWithOneSentence) {
+  const std::vector<std::pair<std::pair<std::string, std::string>, std::string>> wrong = {
+      {{"gyros = [\"gyro_2\"]", "gyros = [\"gyro_9\"]"}, "expected \"all\" or some of gyro_1"},
+      {{"set = \"calibrator.range\"", "set = \"calibrater.range\""}, "expected INSTRUMENT.NAME with one of unit, calibrator"},
+      {{"range = \"22 mA\", level = \"5 mA\"", "range = \"22 mA\", level = \"5 A\""}, "expected calibrator.current from 0 A to 2.2 A"},
+      {{"value = \"{setting.level}\"", "value = \"{setting.levle}\""}, "expected one of {channel}"},
+      {{"within = \"0.3 degC\"", "within = \"0.3 V\""}, "expected a number with a unit of degC"},
+      {{"in = [\"accels\"]", "in = [\"accelerometers\"]"}, "expected the name of a list"},
+      {{"do = \"accel_channel\"", "do = \"accel\""}, "expected the name of a block"},
+      {{"poll = \"30 s\"", "pol = \"30 s\""}, "unknown key"},
+      {{"value = \"on\"", "value = \"yes\""}, "expected one of off, on"},
+      {{"title = \"Scale", "duration = \"3 h\"\ntitle = \"Scale"}, "expected the plan's own"},
+  };
+  for (const auto& [change, expected] : wrong) {
+    const ShortSequence files("scale_factor.toml", {change});
+    try {
+      load_sequence(files.file());
+      ADD_FAILURE() << "took " << change.second;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("scale_factor.toml:"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Sequence, TheShippedProceduresAreAsLongAsTheDocumentSays) {
+  const std::filesystem::path shipped = std::filesystem::path(WAVERIG_SOURCE_DIR) / "rig" / "sequences";
+  EXPECT_NEAR(load_sequence(shipped / "scale_factor.toml").expected_s(), 38 * kHour, 0.02 * 38 * kHour);
+  EXPECT_NEAR(load_sequence(shipped / "bias.toml").expected_s(), 25 * kHour, 0.02 * 25 * kHour);
+}
+
+}  // namespace
+}  // namespace waverig::rig::bench
