@@ -1,5 +1,5 @@
-// Method: one way from samples to heave and waves, chosen by name. It sees samples and its settings, nothing else:
-// no setting of the rig, no truth, no seed, no clock.
+// Method: one way from samples to heave and waves, chosen by name. It sees samples and its settings, nothing
+// else: no setting of the rig, no truth, no seed, no clock.
 #pragma once
 #include <memory>
 #include <string>
@@ -11,23 +11,24 @@
 
 namespace waverig::estimator {
 
-// What a laboratory knows of its sensor beforehand (data sheet and calibration certificate), for the uncertainty
-// budget. Standard uncertainties, k = 1. The defaults are a fresh six-position calibration of a data-sheet part.
+// What a laboratory knows of its sensor beforehand (data sheet and calibration certificate), for the
+// uncertainty budget. Standard uncertainties, k = 1. The defaults are a fresh six-position calibration of a
+// data-sheet part.
 struct SensorKnowledge {
-  double gravity_mps2 = kStandardGravity;          // at the place of measurement
-  double gravity_sigma_mps2 = 0.015;               // how well it is known; small: the mean |f| then tells scale and bias
-  double accel_bias_sigma_mps2 = 2e-3;             // what the calibration leaves, per axis, ageing included
-  double accel_scale_sigma = 3e-4;                 // relative
+  double gravity_mps2 = kStandardGravity;  // at the place of measurement
+  double gravity_sigma_mps2 = 0.015;    // how well it is known; small: the mean |f| then tells scale and bias
+  double accel_bias_sigma_mps2 = 2e-3;  // what the calibration leaves, per axis, ageing included
+  double accel_scale_sigma = 3e-4;      // relative
   double accel_misalignment_sigma_rad = 3e-4;
-  double accel_slope_sigma = 0;                    // relative; slope at 1 g against the chord from -1 g to 1 g
+  double accel_slope_sigma = 0;  // relative; slope at 1 g against the chord from -1 g to 1 g
   double gyro_bias_sigma_radps = 0.2 * kDegree;
-  double gyro_scale_sigma = 0.01;                  // relative
+  double gyro_scale_sigma = 0.01;  // relative
 };
 
 struct MethodSettings {
   SensorKnowledge sensor;
-  CompassSettings compass{};                       // used where samples carry a magnetic field
-  double fixed_lag_s = 0;                          // for methods that may answer late
+  CompassSettings compass{};  // used where samples carry a magnetic field
+  double fixed_lag_s = 0;     // for methods that may answer late
 };
 
 // Receives what a method finds; a method may call it at any time during add() and finish().
@@ -43,7 +44,7 @@ class Method {
  public:
   virtual ~Method() = default;
   virtual void add(const ImuSample& sample, Output& output) = 0;
-  virtual void finish(Output& output) = 0;         // the record ends: give what is still held back
+  virtual void finish(Output& output) = 0;  // the record ends: give what is still held back
 };
 
 // Throws UserError for an unknown name, naming the known ones.

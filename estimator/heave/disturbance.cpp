@@ -8,7 +8,8 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kCorrelation_s = 0.25;        // of what tilt errors and offsets do to the vertical
+constexpr double kTiltCorrelation_s = 1.0;     // of what a tilt error does to the vertical
+constexpr double kOffsetCorrelation_s = 0.25;  // of what a turned offset does to it
 constexpr double kSaturatedNoise_m2ps3 = 1.0;  // several m/s^2 for tenths of a second
 constexpr double kSlowestSea_radps = 0.2;
 
@@ -33,13 +34,13 @@ AttitudeSettings attitude_settings(const SensorKnowledge& sensor) {
 double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, double gravity_mps2) {
   const double tilt2 = square(attitude.tilt_sigma_rad);
   const double noise = tilt2 * attitude.a_N.head<2>().squaredNorm() + square(gravity_mps2 * tilt2);
-  return kCorrelation_s * noise + (flags & flag::kSaturation ? kSaturatedNoise_m2ps3 : 0.0);
+  return kTiltCorrelation_s * noise + (flags & flag::kSaturation ? kSaturatedNoise_m2ps3 : 0.0);
 }
 
 double turned_offset_m2ps3(const AttitudeSample& attitude, const Motion& motion,
                            const SensorKnowledge& sensor) {
   const Vector3d down_B = attitude.q_NB.conjugate() * Vector3d::UnitZ();
-  return kCorrelation_s * square(offset_mps2(motion, sensor)) * (down_B - motion.down_B).squaredNorm();
+  return kOffsetCorrelation_s * square(offset_mps2(motion, sensor)) * (down_B - motion.down_B).squaredNorm();
 }
 
 void Motion::follow(const AttitudeSample& attitude, const Vector3d& f_B, double gravity_mps2, double share) {

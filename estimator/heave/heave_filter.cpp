@@ -6,7 +6,6 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kDt = kNodeInterval_s;
 constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25,
                  kBiasVariance_m2ps4 = 0.1;        // nothing known
 constexpr double kMeasurementVariance_m2 = 1e-10;  // the path is exact; this keeps the algebra regular
@@ -15,35 +14,45 @@ constexpr double kExpected = 3;                    // what it is then taken to b
 constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
 constexpr double kCalmDown = 0.98;  // a node
 
-Eigen::Matrix3d drift_transition() {
+Eigen::Matrix3d drift_transition(double dt) {
   Eigen::Matrix3d F;
-  F << 1, kDt, kDt * kDt / 2, 0, 1, kDt, 0, 0, 1;
+  F << 1, dt, dt * dt / 2, 0, 1, dt, 0, 0, 1;
   return F;
 }
 
-Eigen::Matrix3d toeplitz_free_start() {
+Eigen::Matrix3d unknown_drift() {
   return Eigen::Vector3d(kPathVariance_m2, kSpeedVariance_m2ps2, kBiasVariance_m2ps4).asDiagonal();
 }
 
 }  // namespace
 
-HeaveFilter::HeaveFilter(const SeaModel& model) : model_(model), z_(Eigen::VectorXd::Zero(model.order())) {
+HeaveFilter::HeaveFilter(const SeaModel& model) { begin(model, unknown_drift()); }
+
+void HeaveFilter::set_model(const SeaModel& model) {
+  if (model.interval_s != model_.interval_s || model.order() != model_.order()) {
+    begin(model, P_.bottomRightCorner<3, 3>());
+  } else {
+    model_ = model;
+  }
+  surprise_ = 1;
+}
+
+// No heave is known at these nodes yet: its prior is the sea's own.
+void HeaveFilter::begin(const SeaModel& model, const Eigen::Matrix3d& drift) {
+  model_ = model;
   const int n = model.order();
+  z_.setZero(n);
   P_.setZero(n + 3, n + 3);
   next_P_ = P_;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) P_(i, j) = model.autocovariance_m2[std::abs(i - j)];
-  P_.bottomRightCorner<3, 3>() = toeplitz_free_start();
-}
-
-void HeaveFilter::set_model(const SeaModel& model) {
-  model_ = model;
-  surprise_ = 1;
+  P_.bottomRightCorner<3, 3>() = drift;
 }
 
 void HeaveFilter::step(const PathIncrement& increment, double disturbance_m2ps3) {
-  path_m_ += kDt * (speed_mps_ - kDt * bias_mps2_ / 2) + increment.path_m;
-  speed_mps_ += increment.speed_mps - kDt * bias_mps2_;
+  const double dt = model_.interval_s;
+  path_m_ += dt * (speed_mps_ - dt * bias_mps2_ / 2) + increment.path_m;
+  speed_mps_ += increment.speed_mps - dt * bias_mps2_;
   predict(std::max(model_.accel_noise_m2ps3, disturbance_m2ps3));
   update();
 }
@@ -66,7 +75,8 @@ void HeaveFilter::predict(double noise_m2ps3) {
   for (int i = n - 1; i > 0; --i) z_[i] = z_[i - 1];
   z_[0] = z;
 
-  static const Eigen::Matrix3d F = drift_transition();
+  const double dt = model_.interval_s;
+  const Eigen::Matrix3d F = drift_transition(dt);
   const Eigen::VectorXd Pa = P_.topLeftCorner(n, n) * a;
   next_P_(0, 0) = a.dot(Pa) + surprise_ * model_.innovation_m2;
   next_P_.row(0).segment(1, n - 1) = Pa.head(n - 1).transpose();
@@ -77,11 +87,11 @@ void HeaveFilter::predict(double noise_m2ps3) {
   next_P_.block(n, 0, 3, n) = next_P_.block(0, n, n, 3).transpose();
   Eigen::Matrix3d D = F * P_.block<3, 3>(n, n) * F.transpose();
   // White acceleration noise over one interval, integrated once and twice.
-  D(0, 0) += noise_m2ps3 * kDt * kDt * kDt / 3;
-  D(0, 1) += noise_m2ps3 * kDt * kDt / 2;
-  D(1, 0) += noise_m2ps3 * kDt * kDt / 2;
-  D(1, 1) += noise_m2ps3 * kDt;
-  D(2, 2) += model_.bias_walk_m2ps5 * kDt;
+  D(0, 0) += noise_m2ps3 * dt * dt * dt / 3;
+  D(0, 1) += noise_m2ps3 * dt * dt / 2;
+  D(1, 0) += noise_m2ps3 * dt * dt / 2;
+  D(1, 1) += noise_m2ps3 * dt;
+  D(2, 2) += model_.bias_walk_m2ps5 * dt;
   next_P_.block<3, 3>(n, n) = 0.5 * (D + D.transpose());
   P_.swap(next_P_);
 }

@@ -15,7 +15,8 @@ namespace waverig::estimator {
 class HeaveFilter {
  public:
   explicit HeaveFilter(const SeaModel& model);
-  void set_model(const SeaModel& model);  // of the same order
+  // Keeps the drift; where the nodes lie otherwise from now on, the older heaves are forgotten.
+  void set_model(const SeaModel& model);
 
   // One node interval's increment. disturbance_m2ps3: two-sided density of the acceleration's noise where
   // that is known to be more than the model's, which is an average (attitude not settled, saturated samples;
@@ -37,10 +38,12 @@ class HeaveFilter {
   double lagged_heave_m(int lag) const { return z_[lag]; }
   double lagged_variance_m2(int lag) const { return P_(lag, lag); }
   bool surprised() const { return surprise_ > 10; }  // the model has become too small for the motion
+  const SeaModel& model() const { return model_; }
   int order() const { return model_.order(); }
   double bias_mps2() const { return bias_mps2_; }
 
  private:
+  void begin(const SeaModel& model, const Eigen::Matrix3d& drift);
   void predict(double noise_m2ps3);
   void update();
 

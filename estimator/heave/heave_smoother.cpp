@@ -10,7 +10,6 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kDt = kNodeInterval_s;
 constexpr double kBiasVariance_m2ps4 = 0.1;  // nothing known
 constexpr double kPathVariance_m2 = 1e4;
 
@@ -19,18 +18,18 @@ struct Path {
   Eigen::VectorXd path_m, speed_mps;
 };
 
-Path integrate(std::span<const PathIncrement> increments) {
+Path integrate(std::span<const PathIncrement> increments, double dt) {
   const auto n = static_cast<Eigen::Index>(increments.size()) + 1;
   Path p{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   for (Eigen::Index k = 0; k + 1 < n; ++k) {
     const PathIncrement& step = increments[static_cast<std::size_t>(k)];
-    p.path_m[k + 1] = p.path_m[k] + kDt * p.speed_mps[k] + step.path_m;
+    p.path_m[k + 1] = p.path_m[k] + dt * p.speed_mps[k] + step.path_m;
     p.speed_mps[k + 1] = p.speed_mps[k] + step.speed_mps;
   }
   // Legendre's polynomials on [-1, 1], orthogonal up to O(1/n): twice over is enough.
   const Eigen::VectorXd x =
       n > 1 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(n, -1, 1)) : Eigen::VectorXd::Zero(1);
-  const double per_s = n > 1 ? 2 / (kDt * static_cast<double>(n - 1)) : 0.0;
+  const double per_s = n > 1 ? 2 / (dt * static_cast<double>(n - 1)) : 0.0;
   for (int pass = 0; pass < 2; ++pass) {
     const double c0 = p.path_m.mean();
     p.path_m.array() -= c0;
@@ -56,19 +55,19 @@ void add_row(BandedCholesky& A, Eigen::VectorXd& right, std::span<const Eigen::I
   }
 }
 
-Eigen::Matrix3d drift_information(double noise_m2ps3, double walk_m2ps5) {
+Eigen::Matrix3d drift_information(double noise_m2ps3, double walk_m2ps5, double dt) {
   Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
-  Q(0, 0) = noise_m2ps3 * kDt * kDt * kDt / 3;
-  Q(0, 1) = Q(1, 0) = noise_m2ps3 * kDt * kDt / 2;
-  Q(1, 1) = noise_m2ps3 * kDt;
-  Q(2, 2) = walk_m2ps5 * kDt;
+  Q(0, 0) = noise_m2ps3 * dt * dt * dt / 3;
+  Q(0, 1) = Q(1, 0) = noise_m2ps3 * dt * dt / 2;
+  Q(1, 1) = noise_m2ps3 * dt;
+  Q(2, 2) = walk_m2ps5 * dt;
   return Q.inverse();
 }
 
 // u(k+1) - F u(k), six entries: G = [-F I].
-Eigen::Matrix<double, 3, 6> drift_step() {
+Eigen::Matrix<double, 3, 6> drift_step(double dt) {
   Eigen::Matrix<double, 3, 6> G = Eigen::Matrix<double, 3, 6>::Zero();
-  G.leftCols<3>() << -1, -kDt, -kDt * kDt / 2, 0, -1, -kDt, 0, 0, -1;
+  G.leftCols<3>() << -1, -dt, -dt * dt / 2, 0, -1, -dt, 0, 0, -1;
   G.rightCols<3>().setIdentity();
   return G;
 }
@@ -78,7 +77,8 @@ Eigen::Matrix<double, 3, 6> drift_step() {
 std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments, const SeaModel& model,
                                        std::span<const double> disturbance_m2ps3) {
   const auto nodes = static_cast<Eigen::Index>(increments.size()) + 1;
-  const Path path = integrate(increments);
+  const double dt = model.interval_s;
+  const Path path = integrate(increments, dt);
   const Predictors predictors = levinson(model.autocovariance_m2);
   const Eigen::Index order = model.order();
   BandedCholesky A(3 * nodes, std::max<Eigen::Index>(3 * std::min(order, nodes - 1), 5));
@@ -101,13 +101,13 @@ std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments
     add_row(A, u, index, row, value, 1 / predictors.variance[static_cast<std::size_t>(m)]);
   }
   // The drift's steps.
-  const Eigen::Matrix<double, 3, 6> G = drift_step();
+  const Eigen::Matrix<double, 3, 6> G = drift_step(dt);
   for (Eigen::Index k = 0; k + 1 < nodes; ++k) {
     const double disturbance =
         disturbance_m2ps3.empty() ? 0.0 : disturbance_m2ps3[static_cast<std::size_t>(k)];
     const Eigen::Matrix<double, 6, 6> W =
         G.transpose() *
-        drift_information(std::max(model.accel_noise_m2ps3, disturbance), model.bias_walk_m2ps5) * G;
+        drift_information(std::max(model.accel_noise_m2ps3, disturbance), model.bias_walk_m2ps5, dt) * G;
     for (Eigen::Index i = 0; i < 6; ++i)
       for (Eigen::Index j = 0; j <= i; ++j) A.at(3 * k + i, 3 * k + j) += W(i, j);
   }

@@ -12,6 +12,11 @@ namespace waverig::estimator {
 
 struct PathIncrement {
   double speed_mps = 0, path_m = 0;
+
+  // The increment over this interval and the next, which lasts next_s.
+  PathIncrement then(const PathIncrement& next, double next_s) const {
+    return {speed_mps + next.speed_mps, path_m + next_s * speed_mps + next.path_m};
+  }
 };
 
 class PathIntegrator {

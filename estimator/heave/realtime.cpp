@@ -11,8 +11,10 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabola
+constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
 constexpr double kMotionMemory_s = 120;
-constexpr std::int64_t kSettlingNodes = 120;  // a minute
+constexpr double kSettling_s = 60;
+constexpr int kOldEnough = 120;  // fine nodes of one sea before another one is believed: half a minute
 
 double square(double x) { return x * x; }
 
@@ -27,11 +29,11 @@ SeaIdentifierSettings identifier_settings(const AttitudeSettings& attitude) {
 Realtime::Realtime(const MethodSettings& settings)
     : settings_(settings),
       attitude_(attitude_settings(settings.sensor)),
-      integrator_(kNodeInterval_s),
+      integrator_(kFineInterval_s),
       identifier_(identifier_settings(attitude_settings(settings.sensor))),
       filter_(identifier_.model()),
       counter_(settings.sensor) {
-  const double longest = (identifier_.model().order() - 2) * kNodeInterval_s;
+  const double longest = (filter_.order() - 2) * kFineInterval_s;
   if (!(settings.fixed_lag_s >= 0 && settings.fixed_lag_s <= longest))
     throw UserError("realtime: fixed_lag_s = " + std::to_string(settings.fixed_lag_s) + " is outside 0 to " +
                     std::to_string(longest) + " s");
@@ -43,6 +45,7 @@ void Realtime::add(const ImuSample& sample, Output& output) {
     pending_flags_ |= verdict.flags & ~flag::kGap;
     return;
   }
+  // 1. Level.
   const AttitudeSample& attitude = attitude_.update(sample);
   const double a_up = -attitude.a_N.z();
   const double share =
@@ -50,24 +53,21 @@ void Realtime::add(const ImuSample& sample, Output& output) {
   motion_.follow(attitude, sample.f_B, settings_.sensor.gravity_mps2, share);
   disturbance_.add(disturbance_m2ps3(attitude, verdict.flags, settings_.sensor.gravity_mps2) +
                    turned_offset_m2ps3(attitude, motion_, settings_.sensor));
-  Held held;
-  held.sample.flags = verdict.flags | pending_flags_;
+  // 2. Integrate, and at the nodes tell drift from sea.
+  std::int32_t flags = verdict.flags | pending_flags_;
   pending_flags_ = 0;
   if (!started_ || verdict.dt_s > kLongestGap_s + 2 * guard_.usual_interval_s()) {
-    if (started_) held.sample.flags |= flag::kGap;
+    if (started_) flags |= flag::kGap;
     restart(sample, a_up, output);
   } else {
-    integrator_.add(sample.utime, a_up, [this](std::int64_t, const PathIncrement& whole) { node(whole); });
+    integrator_.add(sample.utime, a_up,
+                    [&](std::int64_t, const PathIncrement& increment) { fine_node(increment, output); });
   }
-  if (!attitude.settled || settled_nodes_ < kSettlingNodes) held.sample.flags |= flag::kSettling;
-  held.sample.utime = sample.utime;
-  held.sample.seq = sample.seq;
-  held.sample.q_NB = attitude.q_NB;
-  held.partial = integrator_.partial();
-  held.since_node_s = integrator_.since_node_s();
-  held.tilt_sigma_rad = attitude.tilt_sigma_rad;
-  held.node = nodes_;
-  held_.push_back(held);
+  // 3. Answer, now or after the lag.
+  if (!attitude.settled || static_cast<double>(settled_nodes_) * filter_.model().interval_s < kSettling_s)
+    flags |= flag::kSettling;
+  held_.push_back(hold(sample, attitude));
+  held_.back().sample.flags = flags;
   release(sample.utime - std::llround(settings_.fixed_lag_s * 1e6), output);
 }
 
@@ -78,48 +78,77 @@ void Realtime::finish(Output& output) {
 void Realtime::restart(const ImuSample& sample, double a_up_mps2, Output& output) {
   if (started_) {
     finish(output);  // no later node tells more of what is held
-    const double missing_s = static_cast<double>(sample.utime - integrator_.node_utime()) * kMicrosecond;
-    const int intervals = static_cast<int>(std::clamp(std::round(missing_s / kNodeInterval_s), 1.0, 200.0));
-    filter_.skip(intervals);
-    nodes_ += intervals;
+    const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
+    filter_.skip(
+        static_cast<int>(std::ceil(std::min(missing_s, kLongestSkip_s) / filter_.model().interval_s)));
     settled_nodes_ = 0;
     identifier_.gap();
   }
   integrator_.start(sample.utime, a_up_mps2);
+  interval_ = {};
+  fine_nodes_ = 0;
+  whole_.clear();
   disturbance_ = {};
   started_ = true;
 }
 
-void Realtime::node(const PathIncrement& increment) {
-  filter_.step(increment, disturbance_.mean());
+void Realtime::fine_node(const PathIncrement& increment, Output& output) {
+  interval_ = interval_.then(increment, kFineInterval_s);
+  ++fine_nodes_;
+  if (identifier_.add(increment)) new_model_ = true;
+  if (fine_nodes_ * kFineInterval_s < filter_.model().interval_s) return;
+  filter_.step(interval_, disturbance_.mean());
+  whole_.push_back(interval_);
+  if (std::ssize(whole_) > filter_.order()) whole_.pop_front();
+  interval_ = {};
+  fine_nodes_ = 0;
   disturbance_ = {};
-  if (filter_.surprised() && identifier_.age() > kSettlingNodes / 2) identifier_.forget();
-  if (identifier_.add(increment)) filter_.set_model(identifier_.model());
   ++nodes_;
   ++settled_nodes_;
-  intervals_.push_back(increment);
-  if (intervals_.size() > static_cast<std::size_t>(filter_.order())) intervals_.pop_front();
+  if (new_model_) take_model(output);
+  if (filter_.surprised() && identifier_.age() > kOldEnough) identifier_.forget();
+}
+
+void Realtime::take_model(Output& output) {
+  if (identifier_.model().interval_s != filter_.model().interval_s) {
+    finish(output);  // other nodes from now on
+    whole_.clear();
+  }
+  filter_.set_model(identifier_.model());
+  new_model_ = false;
+}
+
+Realtime::Held Realtime::hold(const ImuSample& sample, const AttitudeSample& attitude) const {
+  Held held;
+  held.sample.utime = sample.utime;
+  held.sample.seq = sample.seq;
+  held.sample.q_NB = attitude.q_NB;
+  held.partial = interval_.then(integrator_.partial(), integrator_.since_node_s());
+  held.since_node_s = fine_nodes_ * kFineInterval_s + integrator_.since_node_s();
+  held.tilt_sigma_rad = attitude.tilt_sigma_rad;
+  held.node = nodes_;
+  return held;
 }
 
 void Realtime::estimate(const Held& held, HeaveSample& out) const {
-  const std::int64_t ago = nodes_ - held.node;  // nodes since the one before the sample
+  const auto ago = static_cast<int>(nodes_ - held.node);  // nodes since the one before the sample
+  const double t = held.since_node_s;
   double variance;
-  if (ago <= 0) {
-    out.heave_m = filter_.heave_m(held.partial, held.since_node_s);
-    out.heave_rate_mps = filter_.heave_rate_mps(held.partial, held.since_node_s);
-    variance = filter_.variance_m2(held.since_node_s);
+  if (ago == 0) {
+    out.heave_m = filter_.heave_m(held.partial, t);
+    out.heave_rate_mps = filter_.heave_rate_mps(held.partial, t);
+    variance = filter_.variance_m2(t);
   } else {  // between two nodes that are known by now
-    const auto lag = static_cast<int>(ago);
-    const PathIncrement& whole = intervals_[intervals_.size() - static_cast<std::size_t>(ago)];
-    const double dt = kNodeInterval_s, t = held.since_node_s, b = filter_.bias_mps2();
-    const double from = filter_.lagged_heave_m(lag), to = filter_.lagged_heave_m(lag - 1);
+    const PathIncrement& whole = whole_[whole_.size() - static_cast<std::size_t>(ago)];
+    const double dt = filter_.model().interval_s, b = filter_.bias_mps2();
+    const double from = filter_.lagged_heave_m(ago), to = filter_.lagged_heave_m(ago - 1);
     const double speed = (to - from - whole.path_m + b * dt * dt / 2) / dt;
     out.heave_m = from + t * speed + held.partial.path_m - b * t * t / 2;
     out.heave_rate_mps = speed + held.partial.speed_mps - b * t;
-    variance = filter_.lagged_variance_m2(lag - 1);
+    variance = filter_.lagged_variance_m2(ago - 1);
   }
   out.heave_sigma_m =
-      std::sqrt(variance + systematic_variance_m2(identifier_.model(), motion_, settings_.sensor));
+      std::sqrt(variance + systematic_variance_m2(filter_.model(), motion_, settings_.sensor));
 }
 
 void Realtime::release(std::int64_t until_utime, Output& output) {

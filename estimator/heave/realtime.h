@@ -1,12 +1,11 @@
 // `realtime`: heave, heave rate and attitude of any sea, sample by sample.
 //
 // AttitudeFilter levels the specific force; PathIntegrator integrates its vertical part twice; SeaIdentifier
-// learns the sea's spectrum from it and HeaveFilter tells drift from sea by it, at nodes half a second apart.
-// Between nodes heave is the double integral itself: gain one, no lag.
+// learns the sea's spectrum from it and HeaveFilter tells drift from sea by it, at nodes a quarter or half a
+// second apart. Between nodes heave is the double integral itself: gain one, no lag. With a fixed lag each
+// sample waits until the nodes after it have told more about it.
 #pragma once
 #include <deque>
-#include <memory>
-#include <optional>
 
 #include "estimator/attitude/attitude_filter.h"
 #include "estimator/heave/disturbance.h"
@@ -27,12 +26,14 @@ class Realtime : public Method {
  private:
   struct Held {  // a sample that waits for the fixed lag
     HeaveSample sample;
-    PathIncrement partial;  // from the node before it
+    PathIncrement partial;  // from the filter's node before it
     double since_node_s = 0, tilt_sigma_rad = 0;
     std::int64_t node = 0;  // number of that node
   };
   void restart(const ImuSample& sample, double a_up_mps2, Output& output);
-  void node(const PathIncrement& increment);
+  void fine_node(const PathIncrement& increment, Output& output);
+  void take_model(Output& output);
+  Held hold(const ImuSample& sample, const AttitudeSample& attitude) const;
   void estimate(const Held& held, HeaveSample& sample) const;
   void release(std::int64_t until_utime, Output& output);
 
@@ -43,13 +44,16 @@ class Realtime : public Method {
   SeaIdentifier identifier_;
   HeaveFilter filter_;
   WaveCounter counter_;
+
+  PathIncrement interval_;           // since the filter's last node, whole fine intervals
+  int fine_nodes_ = 0;               // how many
+  std::deque<PathIncrement> whole_;  // the filter's newest intervals, newest last
   std::deque<Held> held_;
-  std::deque<PathIncrement> intervals_;  // the newest ones, as many as the lag needs; newest last
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
-  MeanDisturbance disturbance_;  // since the last node
+  MeanDisturbance disturbance_;  // since the filter's last node
   Motion motion_;
-  bool started_ = false;
+  bool started_ = false, new_model_ = false;
 };
 
 }  // namespace waverig::estimator

@@ -28,9 +28,9 @@ struct Piece {
 };
 
 Piece integrate(const Record& record, const std::vector<AttitudeSample>& attitude, std::size_t begin,
-                std::size_t end, double gravity_mps2) {
+                std::size_t end, double interval_s, double gravity_mps2) {
   Piece piece{begin, end, {}, {}, {}, {}, {}};
-  PathIntegrator integrator(kNodeInterval_s);
+  PathIntegrator integrator(interval_s);
   MeanDisturbance disturbance;
   for (std::size_t i = begin; i < end; ++i) {
     const ImuSample& sample = record.samples()[i];
@@ -67,8 +67,8 @@ SeaModel identify(std::span<const Piece> pieces, const AttitudeSettings& attitud
 
 // Heave between the nodes: the double integral from the node on, plus what brings it to the next node's
 // estimate, as a cubic in time (Hermite), so that heave and its rate agree with both.
-void interpolate(const Piece& piece, std::span<const SmoothedNode> nodes, std::span<HeaveSample> out) {
-  const double dt = kNodeInterval_s;
+void interpolate(const Piece& piece, std::span<const SmoothedNode> nodes, double dt,
+                 std::span<HeaveSample> out) {
   for (std::size_t i = 0; i < piece.partial.size(); ++i) {
     const std::size_t k = piece.node[i];
     const double t = piece.since_node_s[i], x = t / dt;
@@ -117,15 +117,22 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
   for (std::size_t i = 0; i < samples.size(); ++i)
     smoothed.motion.follow(smoothed.attitude[i], samples[i].f_B, sensor.gravity_mps2,
                            1.0 / static_cast<double>(i + 1));
-  std::vector<Piece> pieces;
-  for (std::size_t p = 0; p < record.pieces().size(); ++p) {
-    const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : samples.size();
-    pieces.push_back(integrate(record, smoothed.attitude, record.pieces()[p], end, sensor.gravity_mps2));
-  }
+  const auto pieces_with = [&](double interval_s) {
+    std::vector<Piece> pieces;
+    for (std::size_t p = 0; p < record.pieces().size(); ++p) {
+      const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : samples.size();
+      pieces.push_back(
+          integrate(record, smoothed.attitude, record.pieces()[p], end, interval_s, sensor.gravity_mps2));
+    }
+    return pieces;
+  };
+  std::vector<Piece> pieces = pieces_with(kFineInterval_s);
   smoothed.sea = identify(pieces, settings);
+  const double interval_s = smoothed.sea.interval_s;
+  if (interval_s != kFineInterval_s) pieces = pieces_with(interval_s);
   smoothed.heave.resize(samples.size());
   for (const Piece& piece : pieces)
-    interpolate(piece, smooth_heave(piece.increments, smoothed.sea, piece.disturbance_m2ps3),
+    interpolate(piece, smooth_heave(piece.increments, smoothed.sea, piece.disturbance_m2ps3), interval_s,
                 std::span(smoothed.heave).subspan(piece.begin, piece.end - piece.begin));
   const double systematic = systematic_variance_m2(smoothed.sea, smoothed.motion, sensor);
   for (std::size_t i = 0; i < samples.size(); ++i) {

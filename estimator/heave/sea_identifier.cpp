@@ -6,10 +6,10 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kDt = kNodeInterval_s;
-constexpr int kShortest = 24;       // nodes before the first periodogram: 12 s
-constexpr int kFirstSteps = 8;      // nodes between the first ones
-constexpr int kKept = 8;            // of the old sea's nodes, which saw the new one begin
+constexpr double kDt = kFineInterval_s;
+constexpr int kShortest = 48;       // nodes before the first periodogram: 12 s
+constexpr int kFirstSteps = 16;     // nodes between the first ones
+constexpr int kKept = 16;           // of the old sea's nodes, which saw the new one begin
 constexpr double kResolved = 2.5;   // cycles a block: what a Hann window keeps apart from the mean
 constexpr double kLeastSea = 1e-4;  // of the unknown sea: what a calm may still become
 
@@ -20,7 +20,8 @@ SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
       periodogram_(settings.block),
       until_next_(kShortest),
       density_(Eigen::VectorXd::Zero(settings.block / 2 + 1)),
-      model_(unknown_sea(settings.order, settings.accel_noise_m2ps3)) {
+      model_(unknown_sea(settings.interval_s > 0 ? settings.interval_s : 2 * kFineInterval_s, settings.order,
+                         settings.accel_noise_m2ps3)) {
   newest_.reserve(static_cast<std::size_t>(2 * settings.block));
 }
 
@@ -74,9 +75,10 @@ void SeaIdentifier::identify() {
   for (Eigen::Index i = 1; i <= slow; ++i)
     sea[i] = seen / expected * unknown_sea_density_m2s(df * static_cast<double>(i));
   const double noise_m2ps3 = split.noise_m2ps3;
-  model_ = model_of_density(sea, df, settings_.order);
+  const double interval_s = settings_.interval_s > 0 ? settings_.interval_s : suited_interval_s(sea, df);
+  model_ = model_of_density(sea, df, interval_s, settings_.order);
   if (model_.heave_variance_m2() < kLeastSea * kUnknownSea_m2) {  // calm: whatever comes, comes from anywhere
-    model_ = unknown_sea(settings_.order, noise_m2ps3);
+    model_ = unknown_sea(model_.interval_s, settings_.order, noise_m2ps3);
     model_.autocovariance_m2 *= kLeastSea;
     model_.innovation_m2 *= kLeastSea;
   }

@@ -11,9 +11,10 @@
 namespace waverig::estimator {
 
 struct SeaIdentifierSettings {
-  int order = 32;                   // of the autoregression: 16 s
-  int block = 512;                  // nodes of a periodogram: 256 s
-  int every = 32;                   // nodes from one periodogram to the next
+  int order = 32;                   // of the autoregression
+  double interval_s = 0;            // between the model's nodes; 0: as suits the sea
+  int block = 1024;                 // fine nodes of a periodogram: 256 s
+  int every = 64;                   // fine nodes from one periodogram to the next; sooner at first
   double memory_s = 900;            // of the density; 0: never forgets
   double accel_noise_m2ps3 = 6e-6;  // two-sided density assumed until it is seen; data sheet
 };
@@ -22,7 +23,7 @@ class SeaIdentifier {
  public:
   explicit SeaIdentifier(const SeaIdentifierSettings& settings);
 
-  // One node interval. True when there is a new model.
+  // One fine node interval. True when there is a new model.
   bool add(const PathIncrement& increment);
   void gap();                       // the next increment does not follow on the last
   void forget();                    // the sea is another one from about now on

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kRidge = 1e-6;             // of the variance: white, so that no frequency is ruled out
 constexpr double kBiasCorner_radps = 0.02;  // below it the bias walk outweighs the noise
+constexpr double kFastPeriod_s = 3.5;       // of a sea that needs the fine nodes
 constexpr double kUnknownPeak_hz = 1.0 / 14;
 
 }  // namespace
@@ -37,21 +38,21 @@ void SeaModel::set_noise(double density_m2ps3) {
   bias_walk_m2ps5 = density_m2ps3 * kBiasCorner_radps * kBiasCorner_radps;
 }
 
-SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, int order) {
-  const Eigen::Index n = density.size() - 1;
+SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double interval_s, int order) {
   SeaModel model;
+  model.interval_s = interval_s;
   model.autocovariance_m2.setZero(order + 1);
   double m2 = 0;
-  for (Eigen::Index i = 0; i <= n; ++i) {
-    const double weight = (i == 0 || i == n ? 1.0 : 2.0) * df_hz * density[i];
+  for (Eigen::Index i = 1; i < density.size(); ++i) {
+    const double weight = 2 * df_hz * density[i], w = 2 * std::numbers::pi * df_hz * static_cast<double>(i);
     if (weight == 0) continue;
-    const double cos1 = std::cos(std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+    const double cos1 = std::cos(w * interval_s);
     double before = cos1, now = 1;  // cos((j - 1) x), cos(j x), by Chebyshev's recurrence
     for (int j = 0; j <= order; ++j) {
       model.autocovariance_m2[j] += weight * now;
       before = std::exchange(now, 2 * cos1 * now - before);
     }
-    m2 += weight * std::pow(2 * std::numbers::pi * df_hz * static_cast<double>(i), 2);
+    m2 += weight * w * w;
   }
   model.mean_frequency_radps =
       model.autocovariance_m2[0] > 0 ? std::sqrt(m2 / model.autocovariance_m2[0]) : 0.0;
@@ -68,14 +69,23 @@ double unknown_sea_density_m2s(double f_hz) {
   return kUnknownSea_m2 / 2 * 5 * x4 / f_hz * std::exp(-1.25 * x4);
 }
 
-SeaModel unknown_sea(int order, double accel_noise_m2ps3) {
+SeaModel unknown_sea(double interval_s, int order, double accel_noise_m2ps3) {
   constexpr int kBins = 512;
-  const double df = 0.5 / kNodeInterval_s / kBins;
+  const double df = 0.5 / kFineInterval_s / kBins;
   Eigen::VectorXd density = Eigen::VectorXd::Zero(kBins + 1);
   for (int i = 1; i <= kBins; ++i) density[i] = unknown_sea_density_m2s(df * i);
-  SeaModel model = model_of_density(density, df, order);
+  SeaModel model = model_of_density(density, df, interval_s, order);
   model.set_noise(accel_noise_m2ps3);
   return model;
+}
+
+double suited_interval_s(const Eigen::VectorXd& density, double df_hz) {
+  double m0 = 0, m2 = 0;
+  for (Eigen::Index i = 1; i < density.size(); ++i) {
+    m0 += density[i];
+    m2 += density[i] * std::pow(df_hz * static_cast<double>(i), 2);
+  }
+  return m2 * kFastPeriod_s * kFastPeriod_s > m0 ? kFineInterval_s : 2 * kFineInterval_s;
 }
 
 }  // namespace waverig::estimator

@@ -10,10 +10,11 @@
 
 namespace waverig::estimator {
 
-inline constexpr double kNodeInterval_s =
-    0.5;  // twenty a wave of 10 s; shorter waves only need their covariance
+// Sea and noise are seen at nodes this far apart; a model's own nodes may lie wider.
+inline constexpr double kFineInterval_s = 0.25;
 
 struct SeaModel {
+  double interval_s = 0.5;            // between nodes
   Eigen::VectorXd autocovariance_m2;  // of heave at the nodes, lags 0 … order
   Eigen::VectorXd ar;                 // a_1 … a_order
   double innovation_m2 = 0;           // variance of e
@@ -33,13 +34,17 @@ struct Predictors {
 };
 Predictors levinson(const Eigen::VectorXd& autocovariance);
 
-// The model of a sea with the given density of heave at the nodes (two-sided, m^2 s, at i * df, i = 0 … n,
-// where n * df is the nodes' Nyquist frequency).
-SeaModel model_of_density(const Eigen::VectorXd& density_m2s, double df_hz, int order);
+// The model, with nodes interval_s apart, of a sea with the given density of heave (two-sided, m^2 s, at i *
+// df_hz).
+SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double interval_s, int order);
+
+// A tenth of the sea's mean period, or the step next to it that there is: the order then reaches over some
+// three periods.
+double suited_interval_s(const Eigen::VectorXd& density, double df_hz);
 
 // Before anything is known: a fully grown sea (Pierson-Moskowitz) with waves of up to 14 s, and of Hs 2 m.
 inline constexpr double kUnknownSea_m2 = 0.25;  // its variance
 double unknown_sea_density_m2s(double f_hz);    // two-sided
-SeaModel unknown_sea(int order, double accel_noise_m2ps3);
+SeaModel unknown_sea(double interval_s, int order, double accel_noise_m2ps3);
 
 }  // namespace waverig::estimator

@@ -11,7 +11,7 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kFineInterval_s = 0.125;
+constexpr double kSpectrumInterval_s = 0.125;
 constexpr int kLongestBlock = 2048;  // 256 s
 constexpr int kShortestBlock = 64;   // 8 s
 constexpr int kOverlap = 4;          // blocks begin every quarter of their length
@@ -166,7 +166,7 @@ SeaState sea_state(const Record& record, const SmoothedRecord& smoothed, const S
   sea.start_utime = begin;
   sea.duration_s = static_cast<double>(end - begin) * kMicrosecond;
   const double usual_s = sea.duration_s / static_cast<double>(record.samples().size());
-  const double interval_s = std::max(kFineInterval_s, usual_s);
+  const double interval_s = std::max(kSpectrumInterval_s, usual_s);
   const std::vector<Nodes> pieces = nodes_of(record, smoothed, interval_s);
   const int block = block_length(pieces);
   const BlockAverage average = average_blocks(pieces, block, interval_s);

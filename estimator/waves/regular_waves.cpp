@@ -15,6 +15,7 @@ using std::numbers::pi;
 
 constexpr std::size_t kNeighbours = 4;  // on either side: noise and mean force are told together
 constexpr std::size_t kEvenly = 4;      // waves that share one frequency run evenly
+constexpr double kClearMisfit = 1.5;      // times the noise power: about four standard deviations of twenty blocks
 constexpr double kContradiction = 4;    // standard deviations
 
 // Calls visit(wave j) for k and its unbroken neighbours, as far as kNeighbours.
@@ -156,10 +157,12 @@ void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves
   wave.frequency_sigma_m = wave.height_m * 2 * wave.timing.sigma_s / wave.timing.period_s;
 
   if (raw < settings.clear_snr * sigma) wave.flags |= flag::kBelowNoise;
-  const double expected = wave.fit.misfit_mps2 * wave.noise_density / std::max(wave.fit.noise_density, 1e-12);
-  const double misfit =
-      std::sqrt(std::max(0.0, wave.fit.misfit_mps2 * wave.fit.misfit_mps2 - expected * expected));
-  bool settling = wave.timing.waves < 3 || misfit > settings.settled_misfit * raw;
+  // What the residual has beyond the noise of the neighbours, if it stands out of it at all.
+  const double noise = wave.fit.misfit_mps2 * wave.noise_density / std::max(wave.fit.noise_density, 1e-12);
+  const double excess = wave.fit.misfit_mps2 * wave.fit.misfit_mps2 - noise * noise;
+  const bool misfits = excess > kClearMisfit * noise * noise &&
+                       excess > settings.settled_misfit * settings.settled_misfit * raw * raw;
+  bool settling = wave.timing.waves < 3 || misfits;
   const auto spacing_differs = [&](double spacing_s) {
     return std::abs(spacing_s / wave.timing.period_s - 1) > settings.settled_period + 3 * sigma / raw;
   };

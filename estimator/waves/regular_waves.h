@@ -15,7 +15,7 @@ struct RegularWaveSettings {
   double clear_snr = 6;          // what does not reach this is flagged
   double timing_floor = 1e-4;    // of a period: crossings of a real rig are no better than this
   double settled_period = 0.03;  // a wave differing more from its neighbours' spacing is settling
-  double settled_misfit = 0.15;  // rms of the residual over the amplitude, beyond noise
+  double settled_misfit = 0.08;  // rms of the residual over the amplitude, beyond noise
 };
 
 struct RegularWave {

@@ -1,0 +1,178 @@
+#include "estimator/heave/realtime.h"
+
+#include <gtest/gtest.h>
+
+#include <complex>
+
+#include "lcmtypes/error.h"
+#include "lcmtypes/flags.h"
+#include "tests/estimator/collector.h"
+#include "tests/estimator/sea_record.h"
+
+namespace waverig::testing {
+namespace {
+
+using estimator::HeaveSample;
+using estimator::MethodSettings;
+using estimator::Realtime;
+
+constexpr std::size_t kSettled = 30000;   // five minutes at 100 Hz
+
+Collector run_realtime(const std::vector<estimator::ImuSample>& samples, double lag_s = 0) {
+  MethodSettings settings;
+  settings.fixed_lag_s = lag_s;
+  Realtime method(settings);
+  return run(method, samples);
+}
+
+double settled_rms(const SeaRecord& record, double lag_s = 0) {
+  const Collector out = run_realtime(record.samples, lag_s);
+  return rms_over_hm0(out.heaves, record, kSettled, out.heaves.size());
+}
+
+struct Limit {
+  double tp_s, hm0_m, rms;
+};
+
+TEST(Realtime, StaysWithinTheStatedErrorOnAnySeaWithoutDelay) {
+  for (const Limit& limit : {Limit{3, 0.5, 0.025}, {6, 1, 0.025}, {8, 1.5, 0.025}, {9, 2, 0.025}, {12, 1, 0.04}, {12, 4, 0.03}})
+    for (const std::uint64_t seed : {1, 2})
+      EXPECT_LT(settled_rms(sea_record({.tp_s = limit.tp_s, .hm0_m = limit.hm0_m}, seed)), limit.rms)
+          << "Tp " << limit.tp_s << " s, Hm0 " << limit.hm0_m << " m, seed " << seed;
+}
+
+TEST(Realtime, GainsByAFixedLag) {
+  const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5}, 3);
+  const double now = settled_rms(record), half = settled_rms(record, 0.5), two = settled_rms(record, 2);
+  EXPECT_LT(half, 0.95 * now);
+  EXPECT_LT(two, 0.75 * now);
+}
+
+TEST(Realtime, RefusesALagBeyondItsMemory) {
+  MethodSettings settings;
+  settings.fixed_lag_s = 60;
+  EXPECT_THROW(Realtime{settings}, UserError);
+}
+
+// Gain and phase of the estimate against the truth, by demodulating both at the frequencies of the sea.
+TEST(Realtime, HasUnitGainAndNoLagAtTheWaveFrequencies) {
+  const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5}, 4);
+  const Collector out = run_realtime(record.samples);
+  for (const double f : {0.12, 0.16, 0.2, 0.3, 0.4}) {
+    std::complex<double> cross = 0;
+    double power = 0;
+    constexpr std::size_t kBlock = 6000;
+    for (std::size_t begin = kSettled; begin + kBlock <= out.heaves.size(); begin += kBlock / 2)
+      for (int bin = -2; bin <= 2; ++bin) {
+        std::complex<double> e = 0, t = 0;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          const double x = static_cast<double>(i) / kBlock, window = 1 - std::cos(2 * kPi * x);
+          const auto turn = std::polar(window, -2 * kPi * (f * 60 + bin) * x);
+          e += turn * out.heaves[begin + i].heave_m;
+          t += turn * record.heave_m[begin + i];
+        }
+        cross += e * std::conj(t);
+        power += std::norm(t);
+      }
+    EXPECT_NEAR(std::abs(cross) / power, 1, 0.02) << f;
+    EXPECT_NEAR(std::arg(cross) / (2 * kPi * f), 0, 0.06) << f << " Hz: lead in s";
+  }
+}
+
+TEST(Realtime, StatesASigmaThatHolds) {
+  double squared = 0;
+  int n = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const SeaRecord record = sea_record({.tp_s = 5 + 2 * static_cast<double>(seed), .hm0_m = 1.2, .duration_s = 900}, seed);
+    const Collector out = run_realtime(record.samples);
+    for (std::size_t i = kSettled; i < out.heaves.size(); i += 50, ++n)
+      squared += square((out.heaves[i].heave_m - record.heave_m[i]) / out.heaves[i].heave_sigma_m);
+  }
+  EXPECT_GT(squared / n, 0.5);
+  EXPECT_LT(squared / n, 1.6);
+}
+
+TEST(Realtime, FollowsASeaThatGrowsAndLengthens) {
+  const SeaRecord first = sea_record({.tp_s = 5, .hm0_m = 0.5, .duration_s = 600}, 5);
+  SeaRecord both = first;
+  const SeaRecord second = sea_record({.tp_s = 9, .hm0_m = 3, .duration_s = 900}, 5);   // the same sensor
+  for (std::size_t i = 0; i < second.samples.size(); ++i) {
+    auto sample = second.samples[i];
+    sample.seq += std::ssize(first.samples);
+    sample.utime += 600'000'000;
+    both.samples.push_back(sample);
+    both.heave_m.push_back(second.heave_m[i]);
+  }
+  const Collector out = run_realtime(both.samples);
+  EXPECT_LT(rms_over_hm0(out.heaves, both, 60000 + 30000, out.heaves.size()), 0.03);
+}
+
+TEST(Realtime, BridgesShortGapsAndRecoversFromLongOnes) {
+  const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5}, 6);
+  std::vector<estimator::ImuSample> samples;
+  for (std::size_t i = 0; i < record.samples.size(); ++i) {
+    const bool lost = (i % 3000) < 8 || (i > 60000 && i < 61000);   // 80 ms every half minute, and once ten seconds
+    if (!lost) samples.push_back(record.samples[i]);
+  }
+  const Collector out = run_realtime(samples);
+  ASSERT_EQ(out.heaves.size(), samples.size());
+  std::size_t after = 0;
+  while (out.heaves[after].seq < 61000) ++after;
+  EXPECT_TRUE(out.heaves[after].flags & flag::kGap);
+  EXPECT_LT(rms_over_hm0(out.heaves, record, kSettled, after), 0.03);
+  EXPECT_LT(rms_over_hm0(out.heaves, record, after + 12000, out.heaves.size()), 0.03);
+}
+
+TEST(Realtime, DropsRepeatedAndOutOfOrderSamples) {
+  const SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 1, .duration_s = 400}, 7);
+  std::vector<estimator::ImuSample> samples;
+  for (std::size_t i = 0; i < record.samples.size(); ++i) {
+    samples.push_back(record.samples[i]);
+    if (i % 7 == 0) samples.push_back(record.samples[i]);
+    if (i % 11 == 10) samples.push_back(record.samples[i - 5]);
+  }
+  const Collector clean = run_realtime(record.samples), dirty = run_realtime(samples);
+  ASSERT_EQ(dirty.heaves.size(), clean.heaves.size());
+  for (std::size_t i = 0; i < clean.heaves.size(); i += 100) EXPECT_DOUBLE_EQ(dirty.heaves[i].heave_m, clean.heaves[i].heave_m);
+}
+
+TEST(Realtime, WorksAtOtherSampleRates) {
+  for (const double rate : {20.0, 285.0}) {
+    const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 900, .rate_Hz = rate}, 8);
+    const Collector out = run_realtime(record.samples);
+    EXPECT_LT(rms_over_hm0(out.heaves, record, static_cast<std::size_t>(300 * rate), out.heaves.size()), 0.025) << rate;
+  }
+}
+
+TEST(Realtime, SurvivesNonsense) {
+  const SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 1, .duration_s = 400}, 9);
+  std::vector<estimator::ImuSample> samples = record.samples;
+  samples[100].f_B.x() = std::nan("");
+  samples[5000].f_B.setConstant(1e300);
+  samples[5001].w_NB_B.setConstant(-1e300);
+  samples[6000].utime = -1;
+  const Collector out = run_realtime(samples);
+  for (const HeaveSample& h : out.heaves) ASSERT_TRUE(std::isfinite(h.heave_m) && std::isfinite(h.heave_sigma_m));
+  EXPECT_LT(rms_over_hm0(out.heaves, record, kSettled, out.heaves.size()), 0.03);
+}
+
+TEST(Realtime, GivesWavesAsTheyEnd) {
+  const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 900}, 10);
+  MethodSettings settings;
+  Realtime method(settings);
+  Collector out;
+  for (std::size_t i = 0; i < record.samples.size(); ++i) {
+    const std::size_t before = out.waves.size();
+    method.add(record.samples[i], out);
+    if (out.waves.size() > before) {
+      const auto& wave = out.waves.back();
+      const std::int64_t end = wave.start_utime + std::llround(wave.period_s * 1e6);
+      EXPECT_LT(record.samples[i].utime - end, 1'500'000);
+      EXPECT_GT(wave.height_m, 0);
+    }
+  }
+  EXPECT_GT(out.waves.size(), 100u);
+}
+
+}  // namespace
+}  // namespace waverig::testing

@@ -1,0 +1,102 @@
+// A float on an irregular sea, with a data-sheet sensor: samples and truth. The sea comes from motion/sea_state.h, of
+// which the estimator knows nothing.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "estimator/method.h"
+#include "motion/sea_state.h"
+#include "tests/estimator/synthetic_waves.h"
+
+namespace waverig::testing {
+
+struct SeaCase {
+  double tp_s = 8, hm0_m = 1.5;
+  double duration_s = 1200, rate_Hz = 100;
+  double slope_following = 1;
+  bool perfect_sensor = false;
+};
+
+struct SeaRecord {
+  std::vector<estimator::ImuSample> samples;
+  std::vector<double> heave_m, heave_rate_mps;
+  std::vector<Quaterniond> q_NB;
+};
+
+// What a six-position calibration leaves (SensorKnowledge's defaults) and a data-sheet gyro.
+inline SensorErrors calibrated_errors(std::uint64_t seed) {
+  const estimator::SensorKnowledge knowledge;
+  RandomStream stream(seed, "calibration");
+  SensorErrors e = random_errors(stream, knowledge.accel_bias_sigma_mps2, knowledge.accel_scale_sigma,
+                                 knowledge.accel_misalignment_sigma_rad, knowledge.gyro_bias_sigma_radps);
+  e.gyro_scale = stream.gaussian(knowledge.gyro_scale_sigma);
+  return e;
+}
+
+inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
+  motion::SeaSettings sea;
+  sea.tp_s = c.tp_s;
+  sea.hm0_m = c.hm0_m;
+  sea.direction_from_rad = 1.0;
+  sea.spreading_s = 10;
+  sea.components = 250;
+  sea.random_amplitudes = true;
+  sea.exact_hm0 = false;
+  sea.seed = seed;
+  motion::FloatSettings body;
+  body.slope_following = c.slope_following;
+  body.heading_rad = 0.4;
+  motion::SeaMotion motion(motion::draw_components(sea), body);
+
+  const SensorErrors e = c.perfect_sensor ? SensorErrors{.accel_noise_mps2_rthz = 0, .gyro_noise_radps_rthz = 0}
+                                          : calibrated_errors(seed);
+  RandomStream noise(seed, "noise");
+  const double accel_sigma = e.accel_noise_mps2_rthz * std::sqrt(0.5 * c.rate_Hz);
+  const double gyro_sigma = e.gyro_noise_radps_rthz * std::sqrt(0.5 * c.rate_Hz);
+  const Vector3d g_N(0, 0, kStandardGravity);
+  const auto white = [&](double sigma) -> Vector3d {
+    return {noise.gaussian(sigma), noise.gaussian(sigma), noise.gaussian(sigma)};
+  };
+  SeaRecord record;
+  const auto count = static_cast<std::size_t>(c.duration_s * c.rate_Hz);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto utime = 1'000'000 + std::llround(static_cast<double>(i) / c.rate_Hz / kMicrosecond);
+    const BodyMotion m = motion.at(utime);
+    const Vector3d f = specific_force_B(m, g_N);
+    estimator::ImuSample sample;
+    sample.utime = utime;
+    sample.seq = static_cast<std::int64_t>(i);
+    sample.f_B = f + e.E * f + e.b_mps2 + white(accel_sigma);
+    sample.w_NB_B = (1 + e.gyro_scale) * m.w_NB_B + e.gyro_bias_radps + white(gyro_sigma);
+    record.samples.push_back(sample);
+    record.heave_m.push_back(waverig::heave_m(m));
+    record.heave_rate_mps.push_back(-m.velocity_N.z());
+    record.q_NB.push_back(m.q_NB);
+  }
+  return record;
+}
+
+inline double square(double x) { return x * x; }
+
+// Of an estimate against the truth from sample `begin` to `end`, mean removed; as a part of 4 std of the whole truth.
+inline double rms_over_hm0(const std::vector<estimator::HeaveSample>& estimate, const SeaRecord& record,
+                           std::size_t begin, std::size_t end) {
+  double sum = 0, squares = 0, truth = 0, truth2 = 0;
+  for (const double z : record.heave_m) truth += z, truth2 += z * z;
+  const auto all = static_cast<double>(record.heave_m.size());
+  for (std::size_t i = begin; i < end; ++i) {
+    const double error = estimate[i].heave_m - record.heave_m[static_cast<std::size_t>(estimate[i].seq)];
+    sum += error;
+    squares += error * error;
+  }
+  const auto n = static_cast<double>(end - begin);
+  return std::sqrt(squares / n - square(sum / n)) / (4 * std::sqrt(truth2 / all - square(truth / all)));
+}
+
+inline double tilt_between(const Quaterniond& a, const Quaterniond& b) {
+  const Vector3d u = a.conjugate() * Vector3d::UnitZ(), v = b.conjugate() * Vector3d::UnitZ();
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+}  // namespace waverig::testing

@@ -1,0 +1,131 @@
+#include "estimator/heave/smoothed.h"
+
+#include <gtest/gtest.h>
+
+#include "lcmtypes/flags.h"
+#include "tests/estimator/collector.h"
+#include "tests/estimator/sea_record.h"
+
+namespace waverig::testing {
+namespace {
+
+using estimator::Smoothed;
+
+Collector run_smoothed(const std::vector<estimator::ImuSample>& samples) {
+  Smoothed method{estimator::MethodSettings{}};
+  return run(method, samples);
+}
+
+struct Limit {
+  double tp_s, hm0_m, rms;
+};
+
+TEST(Smoothed, StaysWithinTheStatedErrorTheRecordsEndsIncluded) {
+  for (const Limit& limit : {Limit{3, 0.5, 0.005}, {6, 1, 0.005}, {9, 1, 0.005}, {12, 1, 0.007}, {12, 4, 0.005}})
+    for (const std::uint64_t seed : {1, 2}) {
+      const SeaRecord record = sea_record({.tp_s = limit.tp_s, .hm0_m = limit.hm0_m}, seed);
+      const Collector out = run_smoothed(record.samples);
+      ASSERT_EQ(out.heaves.size(), record.samples.size());
+      EXPECT_LT(rms_over_hm0(out.heaves, record, 0, out.heaves.size()), limit.rms)
+          << "Tp " << limit.tp_s << " s, Hm0 " << limit.hm0_m << " m, seed " << seed;
+    }
+}
+
+TEST(Smoothed, IsSoundAtTheVeryEnds) {
+  double first = 0, last = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 600}, seed);
+    const Collector out = run_smoothed(record.samples);
+    const std::size_t n = out.heaves.size();
+    first += square(rms_over_hm0(out.heaves, record, 0, 800)) / 5;
+    last += square(rms_over_hm0(out.heaves, record, n - 800, n)) / 5;
+  }
+  EXPECT_LT(std::sqrt(first), 0.02);
+  EXPECT_LT(std::sqrt(last), 0.02);
+}
+
+TEST(Smoothed, HasNoErrorOfItsOwnOnPerfectSamples) {
+  const SeaRecord record = sea_record({.tp_s = 7, .hm0_m = 2, .duration_s = 600, .perfect_sensor = true}, 3);
+  const Collector out = run_smoothed(record.samples);
+  EXPECT_LT(rms_over_hm0(out.heaves, record, 3000, out.heaves.size() - 3000), 5e-4);
+}
+
+TEST(Smoothed, GivesTheHeaveRate) {
+  const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 600}, 4);
+  const Collector out = run_smoothed(record.samples);
+  double error = 0, truth = 0;
+  for (std::size_t i = 0; i < out.heaves.size(); ++i) {
+    error += square(out.heaves[i].heave_rate_mps - record.heave_rate_mps[i]);
+    truth += square(record.heave_rate_mps[i]);
+  }
+  EXPECT_LT(std::sqrt(error / truth), 0.01);
+}
+
+TEST(Smoothed, StatesASigmaThatHolds) {
+  double squared = 0;
+  int n = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const SeaRecord record = sea_record({.tp_s = 4 + static_cast<double>(seed), .hm0_m = 0.7, .duration_s = 600}, seed);
+    const Collector out = run_smoothed(record.samples);
+    for (std::size_t i = 0; i < out.heaves.size(); i += 100, ++n)
+      squared += square((out.heaves[i].heave_m - record.heave_m[i]) / out.heaves[i].heave_sigma_m);
+  }
+  EXPECT_GT(squared / n, 0.4);
+  EXPECT_LT(squared / n, 1.6);
+}
+
+TEST(Smoothed, MeetsTheTrueHeightsOfSingleWaves) {
+  const SeaRecord record = sea_record({.tp_s = 9, .hm0_m = 2, .duration_s = 900}, 5);
+  const Collector out = run_smoothed(record.samples);
+  ASSERT_GT(out.waves.size(), 80u);
+  double squared = 0;
+  for (const estimator::Wave& wave : out.waves) {
+    const auto begin = static_cast<std::size_t>((wave.start_utime - record.samples[0].utime) / 10000);
+    const auto end = begin + static_cast<std::size_t>(wave.period_s * 100) + 1;
+    const auto [low, high] = std::minmax_element(record.heave_m.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                 record.heave_m.begin() + static_cast<std::ptrdiff_t>(end));
+    squared += square(wave.height_m - (*high - *low));
+    EXPECT_GT(wave.noise_sigma_m, 0);
+  }
+  EXPECT_LT(std::sqrt(squared / static_cast<double>(out.waves.size())), 0.02);
+}
+
+TEST(Smoothed, TreatsThePiecesBetweenGapsAsRecords) {
+  const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 900}, 6);
+  std::vector<estimator::ImuSample> samples;
+  for (std::size_t i = 0; i < record.samples.size(); ++i)
+    if (i < 30000 || i > 32000) samples.push_back(record.samples[i]);
+  const Collector out = run_smoothed(samples);
+  ASSERT_EQ(out.heaves.size(), samples.size());
+  EXPECT_TRUE(out.heaves[30000].flags & flag::kGap);
+  EXPECT_LT(rms_over_hm0(out.heaves, record, 0, out.heaves.size()), 0.01);
+  for (const estimator::Wave& wave : out.waves) EXPECT_LT(wave.period_s, 20);
+}
+
+TEST(Smoothed, TakesRecordsOfAnyLength) {
+  const SeaRecord record = sea_record({.duration_s = 30}, 7);
+  for (const std::size_t n : {0u, 1u, 2u, 49u, 50u, 51u, 120u, 700u, 3000u}) {
+    const std::vector<estimator::ImuSample> few(record.samples.begin(), record.samples.begin() + static_cast<std::ptrdiff_t>(n));
+    const Collector out = run_smoothed(few);
+    ASSERT_EQ(out.heaves.size(), n);
+    for (const auto& h : out.heaves) ASSERT_TRUE(std::isfinite(h.heave_m) && std::isfinite(h.heave_sigma_m)) << n;
+  }
+}
+
+TEST(Smoothed, StaysCalmOnACalm) {
+  std::vector<estimator::ImuSample> samples;
+  RandomStream noise(1, "calm");
+  for (int i = 0; i < 30000; ++i) {
+    estimator::ImuSample s;
+    s.utime = 1000 + i * 10000;
+    s.seq = i;
+    s.f_B = Vector3d(0.02 + noise.gaussian(0.024), noise.gaussian(0.024), -kStandardGravity + noise.gaussian(0.024));
+    s.w_NB_B = Vector3d(noise.gaussian(0.003), noise.gaussian(0.003), noise.gaussian(0.003));
+    samples.push_back(s);
+  }
+  const Collector out = run_smoothed(samples);
+  for (const auto& h : out.heaves) ASSERT_LT(std::abs(h.heave_m), 0.05);
+}
+
+}  // namespace
+}  // namespace waverig::testing
