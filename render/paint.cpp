@@ -73,13 +73,13 @@ void draw_axes(const PanelPlan& p, const PanelView& v) {
     const float y =
         bottom + length + kTickGap * v.pt + 1.3F * tick_px * static_cast<float>(rows) + 1.5F * v.pt;
     v.painter.text({v.centre().x, y},
-                   axis_text_fitted(p.panel.x, p.x_ticks, p.plot.width() * 1.1F, v.fonts, label_px),
+                   axis_text_fitted(p.panel.x, p.x_ticks, p.plot.width(), v.fonts, label_px),
                    {.size_px = label_px, .color = ink, .h = HAlign::kCenter, .v = VAlign::kTop});
   }
   if (const std::string text = axis_text(p.panel.y, p.y_ticks); !text.empty()) {
     const float x = p.label_left + 0.2F * label_px;
     v.painter.text(
-        {x, v.centre().y}, axis_text_fitted(p.panel.y, p.y_ticks, p.plot.height() * 1.08F, v.fonts, label_px),
+        {x, v.centre().y}, axis_text_fitted(p.panel.y, p.y_ticks, p.plot.height(), v.fonts, label_px),
         {.size_px = label_px, .color = ink, .h = HAlign::kCenter, .v = VAlign::kTop, .upwards = true});
   }
 }

@@ -19,8 +19,10 @@ int decimals_of(double step) {
 
 template <class Function>
 void for_each_multiple(double low, double high, double step, Function f) {
-  const double first = std::ceil(low / step - kSlack), last = std::floor(high / step + kSlack);
-  for (double k = first; k <= last; ++k) f(k * step);
+  constexpr double kMost = 1000;  // more are never wanted: the step is too small for its interval
+  const double first = std::ceil(low / step - kSlack), count = std::floor(high / step + kSlack) - first;
+  if (!(count >= 0 && count < kMost)) return;
+  for (int k = 0; k <= static_cast<int>(count); ++k) f((first + k) * step);
 }
 
 }  // namespace
@@ -135,6 +137,8 @@ Ticks time_ticks(double low, double high, int most) {
       kHour,    2 * kHour,   3 * kHour,   6 * kHour,    12 * kHour,   kDay,
       2 * kDay, 5 * kDay,    10 * kDay,   20 * kDay,    50 * kDay};
   const double range = high - low;
+  constexpr double kYear10000 = 253402300800;  // calendars go no further
+  if (low < -kYear10000 || high > kYear10000) return linear_ticks(low, high, most);
   Ticks ticks;
   double step = nice_step(range / kDay, most) * kDay;
   for (const double candidate : kSteps) {

@@ -1,0 +1,136 @@
+// The pages as text here; browser_test.py opens them in a real browser.
+#include "render/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <regex>
+#include <set>
+
+#include "render/campaign_figures.h"
+#include "render/report/html.h"
+#include "tests/render/example_campaign.h"
+#include "tests/render/picture.h"
+
+namespace waverig::render {
+namespace {
+
+std::vector<std::string> all(const std::string& text, const std::string& pattern) {
+  std::vector<std::string> out;
+  const std::regex regex(pattern);
+  for (std::sregex_iterator it(text.begin(), text.end(), regex), end; it != end; ++it)
+    out.push_back((*it)[1]);
+  return out;
+}
+
+// The report of the example with two figures beside it.
+struct Example {
+  test::TemporaryFolder folder;
+  evaluation::CampaignResults results = test::example_campaign();
+  Example() {
+    std::vector<NamedFigure> figures = result_figures(results);
+    figures.resize(2);
+    write_figures(figures, folder.path() / "figures", {});
+    std::ofstream(folder.path() / "campaign.toml") << "name = \"<example>\"\n";
+  }
+  std::string html() const { return report_html(results, folder.path()); }
+};
+
+TEST(Report, AsksNothingFromOutside) {
+  const std::string html = Example().html();
+  for (const std::string& source : all(html, "(?:src|srcset|action|data)=\"([^\"]{0,20})"))
+    EXPECT_TRUE(source.starts_with("data:")) << source;
+  for (const std::string& link : all(html, "href=\"([^\"]*)\""))
+    EXPECT_TRUE(link.starts_with("#") || link.starts_with("runs/")) << link;
+  EXPECT_EQ(html.find("http://"), std::string::npos);
+  EXPECT_EQ(html.find("https://"), std::string::npos);
+  EXPECT_EQ(html.find("url("), std::string::npos);
+  EXPECT_EQ(html.find("@import"), std::string::npos);
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+}
+
+TEST(Report, LinksLeadToWhereTheyPromise) {
+  const std::string html = Example().html();
+  const std::vector<std::string> ids = all(html, " id=\"([^\"]*)\"");
+  const std::set<std::string> known(ids.begin(), ids.end());
+  EXPECT_EQ(known.size(), ids.size()) << "an id stands twice";
+  std::size_t links = 0;
+  for (const std::string& link : all(html, "href=\"#([^\"]*)\"")) {
+    EXPECT_TRUE(known.contains(link)) << link;
+    ++links;
+  }
+  EXPECT_GT(links, 50U);
+}
+
+TEST(Report, NumbersLeadToTheirRunAndWave) {
+  const Example example;
+  const std::string html = example.html();
+  const evaluation::RunResult& run = example.results.runs.front();
+  EXPECT_NE(html.find("id=\"run-" + run.run + "-" + run.method + "-wave-0\""), std::string::npos);
+  EXPECT_NE(html.find("runs/" + run.run + ".lcm"), std::string::npos);
+}
+
+TEST(Report, TellsFlagsSeedAndCommand) {
+  const std::string html = Example().html();
+  EXPECT_NE(html.find("1 \u00D7 gap"), std::string::npos);
+  EXPECT_NE(html.find("seed 7"), std::string::npos);
+  EXPECT_NE(html.find("waverig sweep example.toml --seed 7"), std::string::npos);
+}
+
+TEST(Report, EscapesWhatItIsGiven) {
+  Example example;
+  example.results.name = "<script>alert(1)</script> & \"quotes\"";
+  const std::string html = example.html();
+  EXPECT_EQ(html.find("<script>alert"), std::string::npos);
+  EXPECT_NE(html.find("&lt;script&gt;alert(1)&lt;/script&gt; &amp; &quot;quotes&quot;"), std::string::npos);
+  EXPECT_NE(html.find("name = &quot;&lt;example&gt;&quot;"), std::string::npos);
+}
+
+TEST(Report, StandsWithoutFiguresRunsOrResults) {
+  const test::TemporaryFolder empty;
+  const std::string html = report_html({}, empty.path());
+  EXPECT_NE(html.find("not complete"), std::string::npos);
+  EXPECT_EQ(html.find("<section id=\"figures\""), std::string::npos);
+}
+
+TEST(Report, SummaryIsTheWorstOfAllSettings) {
+  const std::vector<MethodSummary> summaries = summaries_of(test::example_campaign());
+  ASSERT_EQ(summaries.size(), 2U);
+  const MethodSummary& baseline = summaries[0].method == "lee2014" ? summaries[0] : summaries[1];
+  EXPECT_NEAR(baseline.worst_error_percent, 2.0, 1e-9);  // 1.2 cm of 60 cm
+  EXPECT_NEAR(baseline.largest_std_m, 0.02, 1e-12);
+  EXPECT_NEAR(baseline.worst_std_over_bound, 0.01 / 0.0026, 1e-9);
+}
+
+TEST(Comparison, CallsBetterWorseAndNotSignificant) {
+  const Example a, b;
+  evaluation::CampaignResults worse = b.results;
+  worse.cells[0].statistics.std_m *= 3;
+  worse.cells[2].statistics.std_m /= 3;
+  const std::string html = comparison_html(a.results, a.folder.path(), worse, b.folder.path());
+  EXPECT_NE(html.find("\u25BC worse"), std::string::npos);
+  EXPECT_NE(html.find("\u25B2 better"), std::string::npos);
+  EXPECT_NE(html.find("not significant"), std::string::npos);
+  EXPECT_EQ(all(html, "(data:image/png;base64,)").size(), 4U);
+}
+
+TEST(Html, Base64OfAPictureIsWhole) {
+  const Example example;
+  const std::filesystem::path png = example.folder.path() / "figures" / "paper-table-2.png";
+  const std::string html = html_figure(png, "x");
+  const std::size_t first = html.find("base64,") + std::string("base64,").size();
+  const std::string code = html.substr(first, html.find('"', first) - first);
+  const std::vector<std::uint8_t> bytes = test::bytes_of(png);
+  EXPECT_EQ(code.size(), (bytes.size() + 2) / 3 * 4);
+  EXPECT_TRUE(code.starts_with("iVBORw0KGgo")) << "the signature of PNG";
+}
+
+TEST(Html, UnknownNumbersAreDashesAndSortLast) {
+  HtmlTable table("t", {"a"});
+  table.add_row({number_cell(std::nan(""), 2)});
+  EXPECT_NE(table.html().find("data-value=\"NaN\">\u2013<"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace waverig::render
