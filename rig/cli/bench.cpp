@@ -1,0 +1,121 @@
+// waverig bench: a calibration sequence of the front end, against simulated or real instruments.
+#include "rig/bench/bench.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/error.h"
+#include "rig/bench/results.h"
+#include "rig/cli/bench_terminal.h"
+#include "rig/cli/commands.h"
+#include "rig/version.h"
+
+namespace waverig::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace rig::bench;
+
+struct BenchArguments {
+  std::string sequence, out, simulation, scale_factors;
+  bool simulate = false, dry_run = false, resume = false, unattended = false;
+};
+
+BenchOptions options_for(const BenchArguments& arguments) {
+  if (arguments.out.empty()) throw UserError("--out is missing: expected the run's directory, or --dry-run");
+  BenchOptions options;
+  options.out = arguments.out;
+  options.simulate = arguments.simulate;
+  if (!arguments.simulation.empty()) options.simulation = load_simulation(arguments.simulation);
+  options.version = kVersion;
+  options.resume = arguments.resume;
+  return options;
+}
+
+std::string table_of(const std::vector<Verdict>& verdicts) {
+  std::string text = fmt::format("{:<10} {:<14} {:>14} {:>12}\n", "channel", "quantity", "U (k = 2)", "limit");
+  for (const Verdict& v : verdicts)
+    text += fmt::format("{:<10} {:<14} {:>14} {:>12}  {}\n", v.channel, v.quantity, shown(v.value, v.base), shown(v.limit, v.base),
+                        v.passed() ? "" : "exceeded");
+  return text;
+}
+
+// What the run measured, written beside its store. Returns the exit status.
+int conclude(const Sequence& sequence, const BenchArguments& arguments, const BenchResult& result) {
+  const fs::path out = arguments.out;
+  const Store store = Store::open(store_file(out));
+  std::vector<Verdict> verdicts;
+  if (result.complete && sequence.procedure != "none") {
+    std::optional<estimator::FrontEndCalibration> known;
+    if (!arguments.scale_factors.empty()) known = estimator::load_front_end_calibration(arguments.scale_factors);
+    Analysis analysis = analyse(sequence, store, known ? &*known : nullptr);
+    if (known) analysis.calibration = merge(*known, analysis.calibration);
+    verdicts = hold_against_limits(sequence, analysis);
+    save(analysis.calibration, out / "calibration.json");
+    evaluation::write_atomically(out / "channels.csv", channels_csv(analysis));
+    fmt::print("{}", table_of(verdicts));
+  }
+  evaluation::write_atomically(out / "steps.csv", steps_csv(store));
+  evaluation::write_atomically(out / "junit.xml", junit_xml(sequence, store, verdicts));
+  const bool passed = std::ranges::all_of(verdicts, &Verdict::passed);
+  fmt::print("Outcome: {}{}\nResults: {}\n", result.outcome, passed ? "" : ", limits exceeded", arguments.out);
+  return result.outcome == "done" && passed ? 0 : 1;
+}
+
+int bench(const BenchArguments& arguments) {
+  const Sequence sequence = load_sequence(arguments.sequence);
+  if (!arguments.scale_factors.empty()) {   // refused now rather than after a weekend
+    const auto known = estimator::load_front_end_calibration(arguments.scale_factors);
+    for (const UnitDescription::Channel& c : sequence.laboratory.unit.channels) known.channel(c.name);
+  }
+  if (arguments.dry_run) {
+    fmt::print("{}", describe(sequence));
+    return 0;
+  }
+  BenchOptions options = options_for(arguments);
+  StopOnSignal signals;
+  BenchResult result;
+  {
+    BenchTerminal terminal;
+    options.stop = &signals.asked();
+    options.clear_stop = [&] { signals.clear(); };
+    options.progress = [&](const Progress& progress) { terminal.show(progress); };
+    if (terminal.interactive() && !arguments.simulate && !arguments.unattended)
+      options.prompt = [&](const PlannedStep& step) { return terminal.ask(step.text); };
+    result = run_bench(sequence, options);
+  }
+  return conclude(sequence, arguments, result);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<BenchArguments>();
+  CLI::App* command = app.add_subcommand("bench", "Carry out a calibration sequence of the front end, unattended");
+  command->add_option("sequence", arguments->sequence, "Sequence file (TOML)")->required();
+  command->add_option("--out", arguments->out, "The run's directory: its store, calibration file, CSV, JUnit XML, report");
+  command->add_flag("--simulate", arguments->simulate, "Start simulated instruments and run in virtual time, as fast as the machine goes");
+  command->add_option("--simulation", arguments->simulation, "With --simulate: which laboratory, and what goes wrong there (TOML)")
+      ->needs("--simulate");
+  auto* dry = command->add_flag("--dry-run", arguments->dry_run, "Check everything, print the plan and its total time, command nothing");
+  command->add_flag("--resume", arguments->resume, "Go on where a run in --out was killed")->excludes(dry);
+  command->add_flag("--unattended", arguments->unattended, "Answer prompts with the sequence's own defaults, on a terminal too");
+  command->add_option("--scale-factors", arguments->scale_factors,
+                      "For a bias run: calibration file of a scale-factor run of the same unit; the result then holds both");
+  command->footer(
+      "Exit status 1 where the run ended early, a step failed or a limit is exceeded. SIGINT and SIGTERM end a run safely:\n"
+      "calibrator off, chamber to ambient.\n"
+      "Examples:\n"
+      "  waverig bench rig/sequences/scale_factor.toml --dry-run\n"
+      "  waverig bench rig/sequences/scale_factor.toml --simulate --out results/scale\n"
+      "  waverig bench rig/sequences/bias.toml --simulate --out results/bias --scale-factors results/scale/calibration.json\n"
+      "  waverig bench rig/sequences/scale_factor.toml --out /data/unit7 --resume      after a power loss");
+  command->callback([arguments, &chosen] { chosen = [arguments] { return bench(*arguments); }; });
+}
+
+}  // namespace waverig::cli
