@@ -69,10 +69,10 @@ void refuse_impossible(const CampaignSettings& campaign, const CampaignPlan& pla
   for (const SettingPlan& planned : plan.settings)
     for (const auto& judgement : planned.judgements)
       if (judgement.verdict == motion::Verdict::kRefuse)
-        throw UserError(fmt::format("{}: sweep.heights_cm = {:g} at {:g} s: {}: {}; expected a height that can be run, or "
+        throw UserError(fmt::format("{}: sweep.heights_cm = {:g}: {}; expected a height that can be run, or "
                                     "sweep.outside_envelope = \"skip\"",
                                     campaign.sweep.settings_place, planned.setting.height_m / kCentimetre,
-                                    planned.setting.period_s, motion::name_of(judgement.reason), judgement.sentence));
+                                    judgement.sentence));
 }
 
 std::string described(const CampaignSettings& campaign, const CampaignPlan& plan) {
@@ -82,8 +82,8 @@ std::string described(const CampaignSettings& campaign, const CampaignPlan& plan
   for (const SettingPlan& p : plan.settings) {
     std::string remarks = p.judgements.empty() ? "runs" : "";
     for (const auto& j : p.judgements)
-      remarks += fmt::format("{}{}: {}: {}", remarks.empty() ? "" : "; ",
-                             j.verdict == motion::Verdict::kRefuse ? "REFUSED" : "warning", motion::name_of(j.reason), j.sentence);
+      remarks += fmt::format("{}{}: {}", remarks.empty() ? "" : "; ",
+                             j.verdict == motion::Verdict::kRefuse ? "REFUSED" : "warning", j.sentence);
     text += fmt::format("{:8.1f} {:9.1f} {:8} {:10.0f}  {}\n", p.setting.period_s, p.setting.height_m / kCentimetre,
                         p.refused ? 0 : campaign.sweep.repeats, p.duration_s, remarks);
   }

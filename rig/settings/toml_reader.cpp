@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "lcmtypes/error.h"
 
@@ -20,16 +23,35 @@ std::string shown(const toml::node& node) {
   return text.size() > 60 ? text.substr(0, 57) + "…" : text;
 }
 
-std::string shown(const Range& range) {
-  if (std::isinf(range.low) && std::isinf(range.high)) return "a finite number";
-  if (std::isinf(range.high)) return fmt::format("a number of at least {}", range.low);
-  if (std::isinf(range.low)) return fmt::format("a number of at most {}", range.high);
-  return fmt::format("a number from {} to {}", range.low, range.high);
+std::string shown(const Range& range, std::string_view kind = "number") {
+  if (std::isinf(range.low) && std::isinf(range.high)) return fmt::format("a {}{}", kind == "number" ? "finite " : "", kind);
+  if (std::isinf(range.high)) return fmt::format("a {} of at least {}", kind, range.low);
+  if (std::isinf(range.low)) return fmt::format("a {} of at most {}", kind, range.high);
+  return fmt::format("a {} from {} to {}", kind, range.low, range.high);
 }
 
 bool inside(double value, const Range& range) { return std::isfinite(value) && value >= range.low && value <= range.high; }
 
-std::string missing(std::string_view expected) { return fmt::format("is missing: expected {}", expected); }
+// How many letters apart two keys are (Levenshtein): a key that is missing was perhaps only misspelt.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0U);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j)
+      diagonal = std::exchange(row[j + 1], std::min({diagonal + (a[i] == b[j] ? 0U : 1U), row[j] + 1, row[j + 1] + 1}));
+  }
+  return row.back();
+}
+
+std::string missing(const toml::table* table, std::string_view key, std::string_view expected) {
+  std::string misspelt;
+  if (table != nullptr)
+    for (const auto& [other, node] : *table)
+      if (distance(key, other.str()) <= 2)
+        misspelt = fmt::format(" (line {} has {})", node.source().begin.line, other.str());
+  return fmt::format("is missing{}: expected {}", misspelt, expected);
+}
 
 }  // namespace
 
@@ -56,7 +78,7 @@ std::string TomlTable::place_of(std::string_view key) const {
 
 void TomlTable::refuse(std::string_view key, std::string_view expected) const {
   const toml::node* node = shared_->node == nullptr ? nullptr : shared_->node->get(key);
-  if (node == nullptr) throw UserError(fmt::format("{}: {} {}", place_of(key), name_of(key), missing(expected)));
+  if (node == nullptr) throw UserError(fmt::format("{}: {} {}", place_of(key), name_of(key), missing(shared_->node, key, expected)));
   throw UserError(fmt::format("{}: {} = {}: expected {}", place_of(key), name_of(key), shown(*node), expected));
 }
 
@@ -90,7 +112,7 @@ double TomlTable::number(std::string_view key, std::optional<double> fallback, R
 
 std::int64_t TomlTable::integer(std::string_view key, std::optional<std::int64_t> fallback, Range range) {
   const toml::node* node = find(key);
-  const auto expected = [&] { return "a whole number, " + shown(range); };
+  const auto expected = [&] { return shown(range, "whole number"); };
   if (node == nullptr && fallback) return resolve(key, *fallback);
   if (node == nullptr || !node->is_integer()) refuse(key, expected());
   const std::int64_t value = *node->value<std::int64_t>();

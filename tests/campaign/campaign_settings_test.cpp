@@ -46,9 +46,9 @@ TEST(CampaignSettings, SeedOfTheCommandLineStandsInTheResolvedText) {
 TEST(CampaignSettings, ComplaintsNameFileLineKeyValueAndWhatWasExpected) {
   EXPECT_EQ(complaint(""), "c.toml:1: name is missing: expected a text in quotes");
   EXPECT_EQ(complaint("name = \"t\"\n[sweep]\nperiods_s = [6.0]\nheights_m = [0.6]\n"),
-            "c.toml:2: sweep.heights_cm is missing: expected a list with at least one number, each a number from 0.1 to 2000");
+            "c.toml:2: sweep.heights_cm is missing (line 4 has heights_m): expected a list with at least one number, each a number from 0.1 to 2000");
   EXPECT_EQ(complaint(std::string(kMinimal) + "repeats = 0\n"),
-            "c.toml:5: sweep.repeats = 0: expected a whole number, a number from 1 to 10000");
+            "c.toml:5: sweep.repeats = 0: expected a whole number from 1 to 10000");
   EXPECT_EQ(complaint(std::string(kMinimal) + "speed = 1\n").substr(0, 43), "c.toml:5: sweep.speed = 1: unknown key; exp");
   EXPECT_TRUE(complaint(std::string("methods = [\"magic\"]\n") + kMinimal)
                   .starts_with("c.toml:1: methods = [ 'magic' ]: expected names among \"lee2014\", "));

@@ -50,7 +50,7 @@ TEST(Plan, RefusesAHeightTheRigCannotMakeAndSaysWhy) {
     FAIL();
   } catch (const UserError& error) {
     const std::string what = error.what();
-    EXPECT_TRUE(what.starts_with("c.toml:4: sweep.heights_cm = 900 at 6 s: beyond the rig: ")) << what;
+    EXPECT_TRUE(what.starts_with("c.toml:4: sweep.heights_cm = 900: 6 s, 9 m: beyond the rig: ")) << what;
     EXPECT_NE(what.find("expected"), std::string::npos);
   }
 }

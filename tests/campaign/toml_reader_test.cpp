@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"\nmass_kg = 11\n", "test.toml:2: mass_kg = 11: expected a number from 0 to 10"},
         BadInput{"mass_kg = \"1\"\n", "test.toml:1: mass_kg = '1': expected a number from 0 to 10"},
         BadInput{"mass_kg = nan\n", "test.toml:1: mass_kg = nan: expected a number from 0 to 10"},
-        BadInput{"count = 3.5\n", "test.toml:1: count = 3.5: expected a whole number, a finite number"},
+        BadInput{"count = 3.5\n", "test.toml:1: count = 3.5: expected a whole number"},
         BadInput{"names = [1]\n", "test.toml:1: names = [ 1 ]: expected a list with at least one text in quotes"},
         BadInput{"periods_s = []\n", "test.toml:1: periods_s = []: expected a list with at least one number, each a number from 0.5 to 60"},
         BadInput{"kind = \"boat\"\n", "test.toml:1: kind = 'boat': expected one of \"arm\", \"sea\""},
@@ -51,6 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"[axis]\nhomming = true\n", "test.toml:2: axis.homming = true: unknown key; expected one of homing"},
         BadInput{"mass_g = 1\n",
                  "test.toml:1: mass_g = 1: unknown key; expected one of axis, count, kind, mass_kg, names, periods_s, step"},
+        BadInput{"[[step]]\ndoo = \"x\"\n", "test.toml:1: step[0].do is missing (line 2 has doo): expected a text in quotes"},
         BadInput{"[[step]]\ndo = \"x\"\n[[step]]\n", "test.toml:3: step[1].do is missing: expected a text in quotes"}));
 
 TEST(TomlReader, TakesWhatIsThereAndTheFallbackForWhatIsNot) {
