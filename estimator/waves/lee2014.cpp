@@ -1,6 +1,7 @@
 #include "estimator/waves/lee2014.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -28,6 +29,8 @@ void Lee2014::add(const ImuSample& sample, Output& output) {
         -(levelled(sample.f_B, euler.roll_rad, euler.pitch_rad).z() + settings_.attitude.gravity_mps2);
     // 3. Heave, eq (10).
     track(up_mps2, verdict.dt_s);
+    mean_s_ = std::min(mean_s_ + verdict.dt_s, settings_.mean_memory_s);
+    if (mean_s_ > 0) mean_a_mps2_ += (up_mps2 - mean_a_mps2_) * verdict.dt_s / mean_s_;
     // 4. Waves, eqs (11)-(13).
     look_for_crest(sample, verdict.dt_s, verdict.flags, output);
   }
@@ -71,6 +74,7 @@ void Lee2014::track(double up_mps2, double dt) {
 void Lee2014::restart_reference() {
   reference_p_m_ = p_m_;
   reference_v_mps_ = v_mps_;
+  bend_mps_ = 0;
   last_v_mps_ = 0;
   since_reference_s_ = 0;
   has_crest_ = false;
@@ -79,10 +83,11 @@ void Lee2014::restart_reference() {
 
 void Lee2014::look_for_crest(const ImuSample& sample, double dt, std::int32_t flags, Output& output) {
   reference_p_m_ += reference_v_mps_ * dt;
+  bend_mps_ += mean_a_mps2_ * dt;
   since_reference_s_ += dt;
   since_crest_s_ += dt;
   wave_flags_ |= flags;
-  const double v = v_mps_ - reference_v_mps_;
+  const double v = v_mps_ - reference_v_mps_ - bend_mps_;
 
   const bool crest =
       last_v_mps_ > 0 && v <= 0 && (!has_crest_ || since_crest_s_ >= settings_.shortest_period_s);
@@ -90,6 +95,8 @@ void Lee2014::look_for_crest(const ImuSample& sample, double dt, std::int32_t fl
     // The zero lies between the two samples; both waves get the part that is theirs.
     const double after_s = dt * v / (v - last_v_mps_);
     if (has_crest_) close_wave(since_crest_s_ - after_s, wave_flags_, output);
+    reference_v_mps_ += bend_mps_ - mean_a_mps2_ * after_s;
+    bend_mps_ = mean_a_mps2_ * after_s;
     points_.clear();
     has_crest_ = true;
     since_crest_s_ = after_s;
@@ -98,7 +105,7 @@ void Lee2014::look_for_crest(const ImuSample& sample, double dt, std::int32_t fl
     wave_flags_ = flags & ~flag::kGap;
   }
   if (has_crest_) points_.push_back({since_crest_s_, p_m_ - reference_p_m_});
-  last_v_mps_ = v_mps_ - reference_v_mps_;
+  last_v_mps_ = v_mps_ - reference_v_mps_ - bend_mps_;
   if (since_reference_s_ > settings_.longest_period_s) restart_reference();
 }
 
@@ -113,16 +120,19 @@ void Lee2014::close_wave(double period_s, std::int32_t flags, Output& output) {
   }
   if (points_.size() < 8) return;
   const Eigen::Vector3d fit = N.ldlt().solve(y);  // alpha, beta, gamma
-  Wave wave;
-  wave.start_utime = crest_utime_;
-  wave.seq = waves_++;
-  wave.period_s = period_s;
-  wave.height_m = 2 * fit(0);
-  wave.flags = flags;
-  output.wave(wave);
+  if (fit(0) > 0) {  // else it did not begin at a crest: noise at a near standstill
+    Wave wave;
+    wave.start_utime = crest_utime_;
+    wave.seq = waves_++;
+    wave.period_s = period_s;
+    wave.height_m = 2 * fit(0);
+    wave.flags = flags;
+    output.wave(wave);
+  }
   // The line under the next wave: what eq. (12) takes out of this one.
   reference_p_m_ += fit(2) + fit(1) * period_s;
-  reference_v_mps_ += fit(1);
+  // The line's velocity is that of the middle of the wave; it goes on from the end.
+  reference_v_mps_ += fit(1) - 0.5 * mean_a_mps2_ * period_s;
 }
 
 }  // namespace waverig::estimator

@@ -10,7 +10,8 @@
 // heave_m is the trace of eq. (10) as it is, drift and all (the paper's figure 5); the corrected trace of eq.
 // (13) is alpha cos - alpha over each wave. The paper says nothing of how a zero of the velocity is told
 // while the velocity itself runs away: here a reference line (its offset and velocity) is taken off the
-// trace, and each fitted wave moves the line by its gamma and beta. A lost line, no crest for the longest
+// trace, each fitted wave moves the line by its gamma and beta, and the mean acceleration so far (a bias)
+// bends the line for the zero of the velocity alone, not for the fit. A lost line, no crest for the longest
 // period, starts anew at the latest sample.
 #pragma once
 #include <vector>
@@ -27,6 +28,7 @@ struct Lee2014Settings {
   double jerk_mps3_rthz = 1.0;                               // of the heave filter's random-walk acceleration
   double shortest_period_s = 1.0;
   double longest_period_s = 25.0;
+  double mean_memory_s = 100;  // of the mean acceleration; long beside a wave
 };
 
 class Lee2014 final : public Method {
@@ -56,6 +58,8 @@ class Lee2014 final : public Method {
 
   // The reference line under the trace.
   double reference_v_mps_ = 0, reference_p_m_ = 0;
+  double mean_a_mps2_ = 0, mean_s_ = 0;  // and over how long
+  double bend_mps_ = 0;    // what the mean acceleration adds to the line's velocity since the crest
   double last_v_mps_ = 0;  // referenced, of the sample before
 
   // The wave in the making.

@@ -102,5 +102,18 @@ TEST(Lee2014, BiasLeaksIntoTheHeightWithThePeriodSquared) {
   EXPECT_NEAR(at_8 / at_4, 4, 0.8);
 }
 
+// b t^2 / 2 over one period has b T^2 / (2 pi^2) in common with the cosine, and the line takes none of it.
+TEST(Lee2014, FindsItsWavesUnderAnUncalibratedBiasAndReadsThemTooHighByTheClosedForm) {
+  for (const double period_s : {6.0, 12.0}) {
+    SensorErrors errors = no_errors();
+    errors.b_mps2 = Vector3d(0, 0, -0.2);  // upwards: several times the wave's own acceleration
+    const SyntheticRecord record = testing::synthesize(waves_of(period_s, 1), errors, 1);
+    Lee2014 method{MethodSettings{}};
+    const double expected_m = 1 + 0.2 * period_s * period_s / (testing::kPi * testing::kPi);
+    EXPECT_NEAR(mean_height(testing::run(method, record.samples), record), expected_m, 0.02 * expected_m)
+        << period_s;
+  }
+}
+
 }  // namespace
 }  // namespace waverig::estimator
