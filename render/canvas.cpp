@@ -25,7 +25,12 @@ uniform sampler2D coverage;
 in vec2 frag_texel;
 in vec4 frag_color;
 out vec4 color;
-void main() { color = vec4(frag_color.rgb, frag_color.a * texture(coverage, frag_texel).r); })";
+void main() {
+  // Lines carry distances instead of a texel (see Ribbon in draw_list_painter.cpp).
+  float covered = frag_texel.y < 0.0 ? clamp(-frag_texel.y - abs(frag_texel.x), 0.0, 1.0)
+                                     : texture(coverage, frag_texel).r;
+  color = vec4(frag_color.rgb, frag_color.a * covered);
+})";
 
 }  // namespace
 

@@ -14,40 +14,37 @@ Vec2 operator*(float k, Vec2 a) { return {k * a.x, k * a.y}; }
 float dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 Vec2 left_of(Vec2 d) { return {d.y, -d.x}; }
 
-// One antialiased line of a draw list: rows of four vertices (transparent,
-// full, full, transparent) across it.
+// One antialiased line of a draw list: rows of two vertices across it. In place of a texel each carries its
+// distance from the line's middle and, negative, the distance where the line has faded: the canvas' shader
+// tells the coverage from them.
 class Ribbon {
  public:
   Ribbon(ImDrawList& list, Color color, float width_px)
-      : list_(list), full_(packed(color)), clear_(packed(with_alpha(color, 0))) {
+      : list_(list),
+        full_(packed(color)),
+        clear_(packed(with_alpha(color, 0))),
+        outer_(0.5F * std::max(width_px, 1.0F) + 0.5F) {
     // A line thinner than a pixel is one pixel wide and paler.
-    const float half = 0.5F * std::max(width_px, 1.0F);
-    inner_ = half - 0.5F;
-    outer_ = half + 0.5F;
     if (width_px < 1) full_ = packed(with_alpha(color, color.a * width_px));
   }
-  float half() const { return inner_ + 0.5F; }
+  float half() const { return outer_ - 0.5F; }
   void begin() { joined_ = false; }
   // across: perpendicular to the line, of length 1 (more at a mitre).
   void row(Vec2 at, Vec2 across, bool visible) {
-    const std::array<float, 4> offsets = {-outer_, -inner_, inner_, outer_};
-    std::array<ImDrawVert, 4> vertices;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Vec2 p = at + offsets[k] * across;
-      vertices[k] = {
-          {p.x, p.y}, list_._Data->TexUvWhitePixel, visible && (k == 1 || k == 2) ? full_ : clear_};
-    }
+    const auto vertex = [&](float distance) {
+      const Vec2 p = at + distance * across;
+      return ImDrawVert{{p.x, p.y}, {distance, -outer_}, visible ? full_ : clear_};
+    };
+    const std::array<ImDrawVert, 2> vertices = {vertex(-outer_), vertex(outer_)};
     if (joined_ &&
-        list_._VtxCurrentIdx + 4 >= 1U << 16U) {  // a new block of 16-bit indices: the last row again
-      list_.PrimReserve(0, 4);
+        list_._VtxCurrentIdx + 2 >= 1U << 16U) {  // a new block of 16-bit indices: the last row again
+      list_.PrimReserve(0, 2);
       for (const ImDrawVert& v : last_) list_.PrimWriteVtx(v.pos, v.uv, v.col);
     }
-    list_.PrimReserve(joined_ ? 18 : 0, 4);
+    list_.PrimReserve(joined_ ? 6 : 0, 2);
     if (joined_) {
-      for (const unsigned k : {0U, 1U, 2U}) {
-        const unsigned b = list_._VtxCurrentIdx + k, a = b - 4;
-        for (const unsigned i : {a, a + 1, b + 1, a, b + 1, b}) list_.PrimWriteIdx(static_cast<ImDrawIdx>(i));
-      }
+      const unsigned b = list_._VtxCurrentIdx, a = b - 2;
+      for (const unsigned i : {a, a + 1, b + 1, a, b + 1, b}) list_.PrimWriteIdx(static_cast<ImDrawIdx>(i));
     }
     for (const ImDrawVert& v : vertices) list_.PrimWriteVtx(v.pos, v.uv, v.col);
     last_ = vertices;
@@ -57,8 +54,8 @@ class Ribbon {
  private:
   ImDrawList& list_;
   ImU32 full_, clear_;
-  float inner_ = 0, outer_ = 0;
-  std::array<ImDrawVert, 4> last_{};
+  float outer_ = 0;  // px from the middle to where nothing is left
+  std::array<ImDrawVert, 2> last_{};
   bool joined_ = false;
 };
 

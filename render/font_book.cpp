@@ -3,7 +3,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "lcmtypes/error.h"
 
@@ -25,15 +24,24 @@ constexpr std::string_view kCommon =
     "\u2078"
     "\u2079\u207B\u03B1\u03B2\u03B8\u03C3\u03C6\u03C8\u0394\u2264\u2265\uFFFD";
 
+// Empty where there is no such file.
 std::string content_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file) return {};
+  std::string bytes(static_cast<std::size_t>(file.tellg()), '\0');
+  file.seekg(0);
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return bytes;
 }
+
+constexpr ImWchar kReplacement = 0xFFFD;
+
+// What DejaVu lacks: jamo, and from the radicals on. Its large font is read only where it is asked for.
+bool is_east_asian(ImWchar c) { return (c >= 0x1100 && c < 0x1200) || (c >= 0x2E80 && c < kReplacement); }
 
 }  // namespace
 
 void for_each_character(std::string_view utf8, const std::function<void(ImWchar)>& f) {
-  constexpr ImWchar kReplacement = 0xFFFD;
   for (std::size_t i = 0; i < utf8.size();) {
     const auto lead = static_cast<unsigned char>(utf8[i]);
     const std::size_t length = lead < 0x80       ? 1
@@ -56,9 +64,7 @@ void for_each_character(std::string_view utf8, const std::function<void(ImWchar)
 FontBook::FontBook()
     : atlas_(std::make_unique<ImFontAtlas>()),
       regular_(content_of(std::string(kFontFolder) + "dejavu/DejaVuSans.ttf")),
-      bold_(content_of(std::string(kFontFolder) + "dejavu/DejaVuSans-Bold.ttf")),
-      hangul_(content_of(std::string(kFontFolder) + "nanum/NanumGothic.ttf")),
-      hangul_bold_(content_of(std::string(kFontFolder) + "nanum/NanumGothicBold.ttf")) {
+      bold_(content_of(std::string(kFontFolder) + "dejavu/DejaVuSans-Bold.ttf")) {
   if (regular_.empty() || bold_.empty())
     throw UserError(std::string(kFontFolder) +
                     "dejavu: DejaVuSans.ttf and DejaVuSans-Bold.ttf expected "
@@ -73,7 +79,13 @@ void FontBook::require(float size_px, bool bold) {
 }
 
 void FontBook::require(std::string_view utf8) {
-  for_each_character(utf8, [this](ImWchar c) { stale_ |= characters_.insert(c).second; });
+  for_each_character(utf8, [this](ImWchar c) {
+    stale_ |= characters_.insert(c).second;
+    if (!is_east_asian(c) || asked_hangul_) return;
+    asked_hangul_ = true;
+    hangul_ = content_of(std::string(kFontFolder) + "nanum/NanumGothic.ttf");
+    hangul_bold_ = content_of(std::string(kFontFolder) + "nanum/NanumGothicBold.ttf");
+  });
 }
 
 bool FontBook::bake() {

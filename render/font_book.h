@@ -42,6 +42,7 @@ class FontBook {
   std::map<Key, ImFont*> fonts_;
   std::set<ImWchar> characters_;
   std::string regular_, bold_, hangul_, hangul_bold_;  // the files, whole
+  bool asked_hangul_ = false;
   ImVector<ImWchar> ranges_;
   bool stale_ = true;
 };

@@ -34,14 +34,15 @@ void filter_rows(const Image& image, Bytes& rows) {
   const auto width = static_cast<std::size_t>(image.width_px),
              height = static_cast<std::size_t>(image.height_px);
   rows.resize(height * (1 + 3 * width));
+  const std::vector<std::uint8_t> blank(4 * width, 0);  // above the first row
   for (std::size_t y = 0; y < height; ++y) {
     std::uint8_t* out = rows.data() + y * (1 + 3 * width);
     const std::uint8_t* line = image.rgba.data() + 4 * width * y;
-    *out++ = y == 0 ? 0 : 2;
-    const std::uint8_t* above = y == 0 ? nullptr : line - 4 * width;
-    for (std::size_t x = 0; x < width; ++x, out += 3) {
+    const std::uint8_t* above = y == 0 ? blank.data() : line - 4 * width;
+    *out++ = 2;
+    for (std::size_t x = 0; x < width; ++x) {
       for (std::size_t c = 0; c < 3; ++c)
-        out[c] = static_cast<std::uint8_t>(line[4 * x + c] - (above != nullptr ? above[4 * x + c] : 0));
+        out[3 * x + c] = static_cast<std::uint8_t>(line[4 * x + c] - above[4 * x + c]);
     }
   }
 }
