@@ -10,11 +10,27 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "estimator/calibration/accelerometer_calibration.h"
 #include "motion/kinematics/frames.h"
 
 namespace waverig::estimator {
+
+// The sensor at rest with one body axis upright.
+struct StaticPose {
+  int axis = 2;      // 0, 1, 2: x, y, z of the body
+  double sign = -1;  // +1: the axis points up, so that its specific force is +g
+  std::string_view name;
+};
+
+// Lee 2014, Table 1.
+inline constexpr std::array<StaticPose, 6> kSixPositions{{{0, +1, "x up"},
+                                                          {0, -1, "x down"},
+                                                          {1, +1, "y up"},
+                                                          {1, -1, "y down"},
+                                                          {2, +1, "z up"},
+                                                          {2, -1, "z down"}}};
 
 // The mean reading in one position and its uncertainty.
 struct PositionReading {

@@ -28,6 +28,6 @@ void add_node(CLI::App& app, Command& chosen);
 
 inline constexpr void (*kCommands[])(CLI::App&, Command&) = {
     add_sweep, add_plan, add_estimate, add_evaluate, add_figures, add_report, add_film, add_compare, add_merge, add_node, add_analyse,
-    add_bench};
+    add_bench, add_calibrate};
 
 }  // namespace waverig::cli

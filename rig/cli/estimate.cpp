@@ -3,26 +3,22 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <vector>
 
+#include "estimator/calibration/accelerometer_calibration.h"
 #include "estimator/evaluation/heave_csv.h"
 #include "estimator/evaluation/heave_spectrum.h"
 #include "estimator/evaluation/netcdf_file.h"
-#include "estimator/evaluation/sample_csv.h"
 #include "estimator/evaluation/summary.h"
 #include "estimator/evaluation/waves_csv.h"
 #include "estimator/evaluation/zero_crossing.h"
-#include "estimator/messages.h"
 #include "estimator/method.h"
-#include "lcmtypes/channels.h"
 #include "lcmtypes/error.h"
-#include "lcmtypes/event_log.h"
 #include "lcmtypes/flags.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/recording.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
@@ -32,51 +28,11 @@ namespace fs = std::filesystem;
 using estimator::ImuSample;
 
 struct EstimateArguments {
-  std::string input, out, method;
+  std::string input, out, method, calibration;
   bool netcdf = false;
   double rest_s = 0;
   double gravity_mps2 = kStandardGravity;
 };
-
-// What a recording gives, sample by sample; false at its end.
-using SampleSource = std::function<bool(ImuSample&)>;
-
-bool is_event_log(const fs::path& path) {
-  constexpr unsigned char kSync[] = {0xED, 0xA1, 0xDA, 0x01};
-  unsigned char head[4] = {};
-  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
-    const bool read = std::fread(head, 1, sizeof head, file) == sizeof head;
-    std::fclose(file);
-    if (read && std::equal(std::begin(head), std::end(head), std::begin(kSync))) return true;
-  }
-  return path.extension() == ".lcm";
-}
-
-SampleSource samples_of_log(const fs::path& path) {
-  auto reader = std::make_shared<EventLogReader>(path);
-  auto event = std::make_shared<LogEvent>();
-  return [reader, event, path, any = false](ImuSample& sample) mutable {
-    while (reader->next(*event)) {
-      if (event->channel != channel::kImu) continue;
-      imu_t message{};
-      if (!event->decode(message))
-        throw UserError(fmt::format("{}: channel {}, time {}: {} bytes of another type; expected imu_t",
-                                    path.string(), event->channel, event->utime, event->data.size()));
-      sample = estimator::sample_of(message);
-      return any = true;
-    }
-    if (!any)
-      throw UserError(
-          fmt::format("{}: no samples; expected imu_t on channel {}", path.string(), channel::kImu));
-    return false;
-  };
-}
-
-SampleSource samples_of(const fs::path& path) {
-  if (is_event_log(path)) return samples_of_log(path);
-  auto reader = std::make_shared<evaluation::SampleCsvReader>(path);
-  return [reader](ImuSample& sample) { return reader->next(sample); };
-}
 
 // The unit rests at the start of the record: what the gyroscope reads there is its bias.
 SampleSource without_gyro_bias(SampleSource source, double rest_s, const fs::path& path) {
@@ -99,6 +55,18 @@ SampleSource without_gyro_bias(SampleSource source, double rest_s, const fs::pat
     else if (!source(out))
       return false;
     out.w_NB_B -= bias_radps;
+    return true;
+  };
+}
+
+// Lee 2014, eq. (16), and the gyroscope's offset.
+SampleSource calibrated(SampleSource source, const estimator::SensorCalibration& calibration) {
+  return [source = std::move(source), correct = estimator::AccelerometerCorrection(calibration.accelerometer),
+          offset_radps = calibration.gyroscope.offset_radps](ImuSample& sample) {
+    if (!source(sample)) return false;
+    sample.f_B = correct(sample.f_B);
+    sample.w_NB_B -= offset_radps;
+    sample.flags &= ~flag::kUncalibrated;
     return true;
   };
 }
@@ -168,6 +136,8 @@ void check_units(double mean_force_mps2, const EstimateArguments& arguments) {
 
 int estimate(const EstimateArguments& arguments) {
   SampleSource source = samples_of(arguments.input);
+  if (!arguments.calibration.empty())
+    source = calibrated(std::move(source), estimator::load_calibration(arguments.calibration));
   if (arguments.rest_s > 0) source = without_gyro_bias(std::move(source), arguments.rest_s, arguments.input);
   estimator::MethodSettings settings;
   settings.sensor.gravity_mps2 = arguments.gravity_mps2;
@@ -228,6 +198,10 @@ void add_estimate(CLI::App& app, Command& chosen) {
   command->add_option("--out", arguments->out, "Directory to write into")->required();
   command->add_option("--method", arguments->method, fmt::format("Method: {}", fmt::join(names, ", ")))
       ->capture_default_str();
+  command->add_option(
+      "--calibration", arguments->calibration,
+      "Calibration file to correct the samples by (waverig calibrate); without it they are taken "
+      "as calibrated");
   command
       ->add_option("--rest-seconds", arguments->rest_s,
                    "The unit rests so long at the start: take the gyroscope's bias there")
@@ -242,6 +216,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
       "body axes forward, right, down; level at rest az = -g.\n"
       "Examples:\n"
       "  waverig estimate recording.csv.gz --out results/mine --rest-seconds 5\n"
+      "  waverig estimate recording.csv.gz --calibration unit7.json --out results/mine\n"
       "  waverig estimate results/table2/runs/T12.00s_H100.0cm_r1.lcm --out results/again --method lee2014");
   command->callback([arguments, &chosen] { chosen = [arguments] { return estimate(*arguments); }; });
 }

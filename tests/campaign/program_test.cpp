@@ -32,7 +32,7 @@ TEST(Program, HelpOfEveryCommandShowsAnExampleAndExitsWithZero) {
   const Outcome help = run(temporary, "--help");
   EXPECT_EQ(help.status, 0);
   EXPECT_NE(help.out.find("Examples:"), std::string::npos);
-  for (const char* command : {"sweep", "plan", "estimate", "evaluate", "figures", "report", "film", "compare", "merge"}) {
+  for (const char* command : {"sweep", "plan", "estimate", "evaluate", "figures", "report", "film", "compare", "merge", "calibrate"}) {
     const Outcome outcome = run(temporary, std::string(command) + " --help");
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_NE(outcome.out.find("waverig " + std::string(command)), std::string::npos) << command;
@@ -54,6 +54,7 @@ TEST_P(ProgramRefuses, WithExitTwoAndOneLine) {
   temporary.write("too_high.toml", "name = \"t\"\n[sweep]\nperiods_s = [6.0]\nheights_cm = [900.0]\n");
   temporary.write("no.toml", "name = \n");
   temporary.write("broken_row.csv", "utime,ax,ay,az,gx,gy,gz\n0,0,0,-9.8,0,0,0\n10000,0,0,x,0,0,0\n");
+  temporary.write("level.csv", "utime,ax,ay,az,gx,gy,gz\n0,0,0,-9.8,0,0,0\n10000,0,0,-9.8,0,0,0\n");
   temporary.write("no_header.csv", "1,2,3\n");
   temporary.write("truncated.lcm", std::string("\xED\xA1\xDA\x01", 4) + "short");
   temporary.write("heave.csv", "utime,heave_m\n0,1\n0,2\n");
@@ -81,6 +82,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"NoHeader", "estimate no_header.csv --out out", "no_header.csv, line 1"},
         BadCall{"TruncatedLog", "estimate truncated.lcm --out out", "truncated.lcm"},
         BadCall{"UnknownMethod", "estimate broken_row.csv --method magic --out out", "magic"},
+        BadCall{"NotSixPositions", "calibrate accelerometer level.csv --out out", "level.csv: six-position calibration: x up held still for 0 s"},
+        BadCall{"NoCalibration", "estimate level.csv --calibration no.toml --out out", "no.toml"},
         BadCall{"TimeStandsStill", "evaluate heave.csv --out out", "heave.csv, line 3, column utime"}),
     [](const auto& instance) { return instance.param.name; });
 
@@ -109,6 +112,27 @@ TEST(Program, ResultsDirectoryAloneReproducesItself) {
   ASSERT_EQ(run(temporary, "sweep tiny.toml --out first --seed 5").status, 0);
   ASSERT_EQ(run(temporary, "sweep first/campaign.toml --out second").status, 0);
   EXPECT_EQ(bytes_of(temporary / "first/results.csv"), bytes_of(temporary / "second/results.csv"));
+}
+
+std::string six_sides(double bias_mps2) {
+  std::string text = "utime,ax,ay,az,gx,gy,gz\n";
+  for (int row = 0; row < 6 * 600; ++row) {
+    const int pose = row / 600, wiggle = row % 2;
+    double f[3] = {bias_mps2 + 0.001 * wiggle, bias_mps2, bias_mps2};
+    f[pose / 2] += pose % 2 == 0 ? 9.80665 : -9.80665;
+    text += std::to_string(row * 10000) + "," + std::to_string(f[0]) + "," + std::to_string(f[1]) + "," +
+            std::to_string(f[2]) + ",0.01,0.02,0.03\n";
+  }
+  return text;
+}
+
+TEST(Program, CalibratesAUnitLaidOnItsSixSides) {
+  const TemporaryDirectory temporary;
+  temporary.write("sides.csv", six_sides(0.25));
+  const Outcome outcome = run(temporary, "calibrate accelerometer sides.csv --sensor unit7 --out unit7.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("0.250"), std::string::npos) << outcome.out;
+  EXPECT_NE(bytes_of(temporary / "unit7.json").find("unit7"), std::string::npos);
 }
 
 TEST(Program, PlanSaysNoWithExitOneAndTheReason) {

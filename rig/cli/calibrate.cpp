@@ -1,0 +1,126 @@
+// waverig calibrate: a calibration file from a recording of a unit that was turned by hand or laid on its
+// sides.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "estimator/calibration/rotation_fit.h"
+#include "estimator/calibration/six_position_record.h"
+#include "lcmtypes/error.h"
+#include "rig/cli/commands.h"
+#include "rig/cli/recording.h"
+
+namespace waverig::cli {
+namespace {
+
+constexpr const char* kSixPositionsWay = "six-positions";
+constexpr const char* kRotationWay = "rotation";
+
+struct AccelerometerArguments {
+  std::string recording, out, way = kSixPositionsWay, sensor_id = "unnamed";
+  double gravity_mps2 = kStandardGravity;
+  double fixture_sigma_deg = estimator::SixPositionRecordSettings{}.fixture_sigma_rad / kDegree;
+};
+
+estimator::SensorCalibration by_six_positions(const std::vector<estimator::ImuSample>& samples,
+                                              const AccelerometerArguments& arguments) {
+  estimator::SixPositionRecordSettings settings;
+  settings.fixture_sigma_rad = arguments.fixture_sigma_deg * kDegree;
+  const auto record = estimator::fit_six_position_record(samples, arguments.gravity_mps2, settings);
+  estimator::SensorCalibration calibration;
+  calibration.method = "six positions";
+  calibration.accelerometer = record.fit.calibration;
+  calibration.gyroscope = record.gyroscope;
+  calibration.temperature_degC = record.temperature_degC;
+  calibration.residual_rms_mps2 = record.fit.residual_rms_mps2;
+  calibration.chi_square = record.fit.chi_square;
+  calibration.degrees_of_freedom = record.fit.degrees_of_freedom;
+  for (std::size_t k = 0; k < record.still_s.size(); ++k)
+    fmt::print("{:<8} still for {:.0f} s\n", estimator::kSixPositions[k].name, record.still_s[k]);
+  return calibration;
+}
+
+estimator::SensorCalibration by_rotation(const std::vector<estimator::ImuSample>& samples,
+                                         const AccelerometerArguments& arguments) {
+  const auto fit = estimator::fit_rotation(samples, arguments.gravity_mps2);
+  estimator::SensorCalibration calibration;
+  calibration.method = "rotation";
+  calibration.accelerometer = fit.calibration;
+  if (fit.gyroscope.offset_radps.allFinite()) calibration.gyroscope = fit.gyroscope;
+  calibration.residual_rms_mps2 = fit.residual_rms_mps2;
+  fmt::print("{} windows, attitudes cover {:.0f} %; |f| - g before {:.4f}, after {:.4f} m/s^2 rms\n",
+             fit.windows, 100 * fit.coverage, fit.residual_before_mps2, fit.residual_rms_mps2);
+  return calibration;
+}
+
+std::string table_of(const estimator::SensorCalibration& calibration) {
+  const auto& [M, b, q, covariance] = calibration.accelerometer;
+  const Matrix3d sigma_M = calibration.accelerometer.sigma_M();
+  const Vector3d sigma_b = calibration.accelerometer.sigma_b_mps2();
+  std::string text =
+      "\nM (f_m = M f + b), b in m/s^2, gyroscope's offset in deg/s; standard uncertainties below\n";
+  for (int i = 0; i < 3; ++i) {
+    text += fmt::format("  {:9.5f} {:9.5f} {:9.5f}   {:9.5f}   {:9.4f}\n", M(i, 0), M(i, 1), M(i, 2), b[i],
+                        calibration.gyroscope.offset_radps[i] / kDegree);
+    text += fmt::format("  {:9.5f} {:9.5f} {:9.5f}   {:9.5f}   {:9.4f}\n", sigma_M(i, 0), sigma_M(i, 1),
+                        sigma_M(i, 2), sigma_b[i], calibration.gyroscope.offset_sigma_radps[i] / kDegree);
+  }
+  return text;
+}
+
+int calibrate_accelerometer(const AccelerometerArguments& arguments) {
+  const auto samples = read_samples(arguments.recording);
+  estimator::SensorCalibration calibration;
+  try {
+    calibration = arguments.way == kRotationWay ? by_rotation(samples, arguments)
+                                                : by_six_positions(samples, arguments);
+  } catch (const UserError& error) {
+    throw UserError(fmt::format("{}: {}", arguments.recording, error.what()));
+  }
+  calibration.sensor_id = arguments.sensor_id;
+  calibration.utime = samples.back().utime;
+  calibration.gravity_mps2 = arguments.gravity_mps2;
+  estimator::store_calibration(calibration, arguments.out);
+  fmt::print("{}\nCalibration: {}\n", table_of(calibration), arguments.out);
+  return 0;
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand("calibrate", "A calibration file from a recording of a turned unit");
+  command->require_subcommand(1);
+  auto arguments = std::make_shared<AccelerometerArguments>();
+  CLI::App* accelerometer = command->add_subcommand(
+      "accelerometer", "Scale, misalignment and bias; the gyroscope's offset beside them");
+  accelerometer->add_option("recording", arguments->recording, "Sample CSV, plain or .gz, or LCM event log")
+      ->required();
+  accelerometer->add_option("--out", arguments->out, "Calibration file to write (JSON)")->required();
+  accelerometer
+      ->add_option("--from", arguments->way,
+                   "six-positions: laid still on each of six sides, in any order, 5 s or more each; "
+                   "rotation: turned slowly through many attitudes")
+      ->check(CLI::IsMember({kSixPositionsWay, kRotationWay}))
+      ->capture_default_str();
+  accelerometer->add_option("--gravity", arguments->gravity_mps2, "Local gravity, m/s^2")
+      ->check(CLI::Range(9.7, 9.9))
+      ->capture_default_str();
+  accelerometer
+      ->add_option("--fixture-sigma-deg", arguments->fixture_sigma_deg,
+                   "How exactly the sides stand upright, standard uncertainty")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  accelerometer->add_option("--sensor", arguments->sensor_id, "Name or serial number, kept in the file");
+  accelerometer->footer(
+      "Examples:\n"
+      "  waverig calibrate accelerometer six-sides.csv --sensor unit7 --out unit7.json\n"
+      "  waverig calibrate accelerometer turned.csv.gz --from rotation --out unit7.json\n"
+      "  waverig estimate recording.csv.gz --calibration unit7.json --out results/mine");
+  accelerometer->callback(
+      [arguments, &chosen] { chosen = [arguments] { return calibrate_accelerometer(*arguments); }; });
+  command->footer("Example:\n  waverig calibrate accelerometer six-sides.csv --out unit7.json");
+}
+
+}  // namespace waverig::cli

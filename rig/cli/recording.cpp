@@ -1,0 +1,68 @@
+#include "rig/cli/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "estimator/evaluation/sample_csv.h"
+#include "estimator/messages.h"
+#include "lcmtypes/channels.h"
+#include "lcmtypes/error.h"
+#include "lcmtypes/event_log.h"
+
+namespace waverig::cli {
+
+namespace fs = std::filesystem;
+using estimator::ImuSample;
+
+namespace {
+
+bool is_event_log(const fs::path& path) {
+  constexpr unsigned char kSync[] = {0xED, 0xA1, 0xDA, 0x01};
+  unsigned char head[4] = {};
+  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
+    const bool read = std::fread(head, 1, sizeof head, file) == sizeof head;
+    std::fclose(file);
+    if (read && std::equal(std::begin(head), std::end(head), std::begin(kSync))) return true;
+  }
+  return path.extension() == ".lcm";
+}
+
+SampleSource samples_of_log(const fs::path& path) {
+  auto reader = std::make_shared<EventLogReader>(path);
+  auto event = std::make_shared<LogEvent>();
+  return [reader, event, path, any = false](ImuSample& sample) mutable {
+    while (reader->next(*event)) {
+      if (event->channel != channel::kImu) continue;
+      imu_t message{};
+      if (!event->decode(message))
+        throw UserError(fmt::format("{}: channel {}, time {}: {} bytes of another type; expected imu_t",
+                                    path.string(), event->channel, event->utime, event->data.size()));
+      sample = estimator::sample_of(message);
+      return any = true;
+    }
+    if (!any)
+      throw UserError(
+          fmt::format("{}: no samples; expected imu_t on channel {}", path.string(), channel::kImu));
+    return false;
+  };
+}
+
+}  // namespace
+
+SampleSource samples_of(const fs::path& path) {
+  if (is_event_log(path)) return samples_of_log(path);
+  auto reader = std::make_shared<evaluation::SampleCsvReader>(path);
+  return [reader](ImuSample& sample) { return reader->next(sample); };
+}
+
+std::vector<ImuSample> read_samples(const fs::path& path) {
+  std::vector<ImuSample> samples;
+  const SampleSource source = samples_of(path);
+  for (ImuSample sample; source(sample);) samples.push_back(sample);
+  return samples;
+}
+
+}  // namespace waverig::cli
