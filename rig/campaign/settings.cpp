@@ -6,6 +6,7 @@
 
 #include "lcmtypes/error.h"
 #include "motion/kinematics/frames.h"
+#include "rig/campaign/default_campaign_text.h"
 
 namespace waverig::rig {
 namespace {
@@ -103,6 +104,7 @@ CalibrationRunSettings read_calibration(TomlTable calibration, bool& enabled) {
 }  // namespace
 
 Campaign read_campaign(const std::filesystem::path& file, const std::uint64_t* seed_override) {
+  if (file.empty()) return read_campaign(TomlFile(kDefaultCampaignText, "default campaign"), seed_override);
   return read_campaign(TomlFile(file), seed_override);
 }
 

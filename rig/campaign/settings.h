@@ -69,6 +69,7 @@ struct Campaign {
 };
 
 // Reads and checks a campaign. seed_override replaces the file's seed. Throws UserError.
+// An empty path: the default campaign, which the program carries in itself.
 Campaign read_campaign(const std::filesystem::path& file, const std::uint64_t* seed_override = nullptr);
 Campaign read_campaign(TomlFile file, const std::uint64_t* seed_override = nullptr);
 

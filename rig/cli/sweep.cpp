@@ -18,6 +18,8 @@
 namespace waverig::cli {
 namespace {
 
+constexpr const char* kCampaignHelp = "Campaign file (TOML); without it the default campaign, Table 2 of Lee 2014";
+
 struct SweepArguments {
   std::string campaign, out, shard;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -55,7 +57,7 @@ int sweep(const SweepArguments& arguments) {
   const rig::SweepOptions options{
       .jobs = arguments.jobs,
       .shard = shard,
-      .command = fmt::format("waverig sweep {} --seed {}{}", arguments.campaign, campaign.settings.seed,
+      .command = fmt::format("waverig sweep {}--seed {}{}", arguments.campaign.empty() ? "" : arguments.campaign + " ", campaign.settings.seed,
                              arguments.shard.empty() ? "" : " --shard " + arguments.shard),
       .version = kVersion};
   const evaluation::CampaignResults results =
@@ -81,7 +83,7 @@ int plan(const std::string& file) {
 void add_sweep(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand("sweep", "Plan a campaign, run it, judge it and draw it");
-  command->add_option("campaign", arguments->campaign, "Campaign file (TOML)")->required();
+  command->add_option("campaign", arguments->campaign, kCampaignHelp);
   command->add_option("--out", arguments->out, "Results directory, made anew")->required();
   command->add_option("--jobs", arguments->jobs, "Runs at a time; the results do not depend on it")
       ->check(CLI::Range(1, 4096))
@@ -93,8 +95,9 @@ void add_sweep(CLI::App& app, Command& chosen) {
       ->excludes(resume);
   command->footer(
       "Examples:\n"
-      "  waverig sweep rig/default.toml --out results/table2 --jobs 2\n"
-      "  waverig sweep rig/default.toml --out results/table2 --resume\n"
+      "  waverig sweep --out results/table2\n"
+      "  waverig sweep rig/campaigns/regular.toml --out results/regular --jobs 2\n"
+      "  waverig sweep rig/campaigns/regular.toml --out results/regular --resume\n"
       "  waverig sweep big.toml --out results/part3 --shard 3/16");
   command->callback([arguments, &chosen] { chosen = [arguments] { return sweep(*arguments); }; });
 }
@@ -102,7 +105,7 @@ void add_sweep(CLI::App& app, Command& chosen) {
 void add_plan(CLI::App& app, Command& chosen) {
   auto file = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("plan", "Say what a campaign would run, and what cannot work and why");
-  command->add_option("campaign", *file, "Campaign file (TOML)")->required();
+  command->add_option("campaign", *file, kCampaignHelp);
   command->footer("Exit status 1 where a setting is refused and the campaign does not skip such.\n"
                   "Example:\n  waverig plan rig/default.toml");
   command->callback([file, &chosen] { chosen = [file] { return plan(*file); }; });
