@@ -15,7 +15,10 @@ Lee2014::Lee2014(const MethodSettings& settings, const Lee2014Settings& own)
         attitude.gravity_mps2 = settings.sensor.gravity_mps2;
         return attitude;
       }()) {
-  settings_.attitude.gravity_mps2 = settings.sensor.gravity_mps2;
+  const SensorKnowledge& known = settings.sensor;
+  settings_.attitude.gravity_mps2 = known.gravity_mps2;
+  offset_sigma_mps2_ = std::hypot(known.accel_bias_sigma_mps2, known.gravity_mps2 * known.accel_scale_sigma);
+  scale_sigma_ = std::hypot(known.accel_scale_sigma, known.accel_slope_sigma);
 }
 
 void Lee2014::add(const ImuSample& sample, Output& output) {
@@ -126,6 +129,9 @@ void Lee2014::close_wave(double period_s, std::int32_t flags, Output& output) {
     wave.seq = waves_++;
     wave.period_s = period_s;
     wave.height_m = 2 * fit(0);
+    wave.calibration_sigma_m =
+        std::hypot(offset_sigma_mps2_ * period_s * period_s / (std::numbers::pi * std::numbers::pi),
+                   scale_sigma_ * wave.height_m);
     wave.flags = flags;
     output.wave(wave);
   }

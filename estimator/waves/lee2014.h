@@ -11,8 +11,9 @@
 // (13) is alpha cos - alpha over each wave. The paper says nothing of how a zero of the velocity is told
 // while the velocity itself runs away: here a reference line (its offset and velocity) is taken off the
 // trace, each fitted wave moves the line by its gamma and beta, and the mean acceleration so far (a bias)
-// bends the line for the zero of the velocity alone, not for the fit. A lost line, no crest for the longest
-// period, starts anew at the latest sample.
+// bends the line for the zero of the velocity alone, not for the fit. So a bias b stays in the height as b
+// T^2 / pi^2, and what calibration leaves of it is the wave's calibration uncertainty; the paper states none.
+// A lost line, no crest for the longest period, starts anew at the latest sample.
 #pragma once
 #include <vector>
 
@@ -47,6 +48,7 @@ class Lee2014 final : public Method {
   void restart_reference();
 
   Lee2014Settings settings_;
+  double offset_sigma_mps2_ = 0, scale_sigma_ = 0;  // of the levelled vertical acceleration
   SampleGuard guard_;
   LeeAttitude attitude_;
 

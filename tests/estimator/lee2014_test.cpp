@@ -115,5 +115,25 @@ TEST(Lee2014, FindsItsWavesUnderAnUncalibratedBiasAndReadsThemTooHighByTheClosed
   }
 }
 
+TEST(Lee2014, StatesTheHeightThatAnUnknownBiasMayAdd) {
+  const double period_s = 8;
+  int inside = 0;
+  constexpr int kUnits = 40;
+  for (int unit = 1; unit <= kUnits; ++unit) {
+    MethodSettings settings;
+    RandomStream random(static_cast<std::uint64_t>(unit), "unit");
+    SensorErrors errors = no_errors();
+    errors.b_mps2 = Vector3d(0, 0, random.gaussian(settings.sensor.accel_bias_sigma_mps2));
+    errors.E(2, 2) = random.gaussian(settings.sensor.accel_scale_sigma);
+    const SyntheticRecord record = testing::synthesize(waves_of(period_s, 1), errors, 1);
+    Lee2014 method{settings};
+    const Collector found = testing::run(method, record.samples);
+    inside +=
+        std::abs(mean_height(found, record) - 1) < 2 * found.waves.back().calibration_sigma_m + 0.01 ? 1 : 0;
+    EXPECT_LT(found.waves.back().calibration_sigma_m, 0.05);
+  }
+  EXPECT_GE(inside, 35) << "of " << kUnits << ", k = 2";
+}
+
 }  // namespace
 }  // namespace waverig::estimator
