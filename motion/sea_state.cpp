@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "lcmtypes/error.h"
@@ -23,7 +24,9 @@ void require(bool good, const char* key, double value, const char* expected) {
   if (!good) throw UserError(fmt::format("sea: {} = {} is not {}", key, value, expected));
 }
 
-// Directions against the mean: the middle of each of n equal shares of cos^2s(theta/2), shuffled.
+// Directions against the mean: the middle of each of n equal shares of cos^2s(theta/2). Neighbours in
+// frequency take shares a golden section of all apart, from a random start: the few components that carry a
+// sea's energy then have its whole spreading, as they would not by chance.
 std::vector<double> draw_directions(int n, double spreading_s, RandomStream& random) {
   std::vector<double> directions(static_cast<std::size_t>(n), 0);
   if (spreading_s == 0) return directions;
@@ -41,10 +44,30 @@ std::vector<double> draw_directions(int n, double spreading_s, RandomStream& ran
     while (cell < kGrid - 1 && below + weight(cell) < wanted) below += weight(cell++);
     directions[static_cast<std::size_t>(k)] = -pi + (cell + (wanted - below) / weight(cell)) * step;
   }
-  for (std::size_t k = directions.size() - 1; k > 0; --k)  // Fisher-Yates
-    std::swap(directions[k],
-              directions[static_cast<std::size_t>(random.uniform() * static_cast<double>(k + 1))]);
-  return directions;
+  std::vector<double> place(directions.size());
+  const double start = random.uniform();
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    const double x = start + static_cast<double>(i) / std::numbers::phi;
+    place[i] = x - std::floor(x);
+  }
+  std::vector<std::size_t> order(directions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return place[a] < place[b]; });
+  std::vector<double> shared(directions.size());
+  for (std::size_t k = 0; k < order.size(); ++k) shared[order[k]] = directions[k];
+  return shared;
+}
+
+// Turns all directions together until the energy's mean lies where it shall.
+void centre_directions(std::vector<WaveComponent>& components, double towards_rad) {
+  double along = 0, across = 0;
+  for (const auto& c : components) {
+    const double e = c.amplitude_m * c.amplitude_m;
+    along += e * std::cos(c.towards_rad - towards_rad);
+    across += e * std::sin(c.towards_rad - towards_rad);
+  }
+  const double off_rad = std::atan2(across, along);
+  for (auto& c : components) c.towards_rad -= off_rad;
 }
 
 }  // namespace
@@ -78,6 +101,7 @@ std::vector<WaveComponent> draw_components(const SeaSettings& s) {
     const double scale = s.hm0_m / (4 * std::sqrt(variance));
     for (auto& c : components) c.amplitude_m *= scale;
   }
+  if (s.spreading_s > 0) centre_directions(components, s.direction_from_rad + pi);
   return components;
 }
 

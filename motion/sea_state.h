@@ -32,8 +32,9 @@ struct WaveComponent {
   double towards_rad = 0;  // true
 };
 
-// Frequencies are drawn one in each of equal bands, so that the sea does not repeat; directions one in each
-// of equal shares of the spreading, in random order. Throws UserError where a setting makes no sea.
+// Frequencies are drawn one in each of equal bands, so that the sea does not repeat; directions are one in
+// each of equal shares of the spreading, far apart in neighbours, the energy's mean exactly as set. Throws
+// UserError where a setting makes no sea.
 std::vector<WaveComponent> draw_components(const SeaSettings& settings);
 
 // Of the components as they are: exact, no sampling scatter.

@@ -17,6 +17,7 @@ waverig_library(rig_models
     sensors/accelerometer.cpp sensors/gyroscope.cpp sensors/magnetometer.cpp
     frontend/crc.cpp frontend/frame_codec.cpp frontend/frame_layout.cpp frontend/simulated_unit.cpp
     acquisition/acquisition.cpp acquisition/calibration_report.cpp acquisition/calibration_run.cpp
+    acquisition/compass_report.cpp acquisition/compass_run.cpp
     acquisition/serial_port.cpp
   LINK waverig::kinematics waverig::calibration
   PRIVATE_LINK waverig::rig_settings fmt::fmt nlohmann_json::nlohmann_json)

@@ -69,6 +69,7 @@ class Reader {
     throw UserError(
         fmt::format("{}: {} = {}: expected {}", name_, path, found.dump().substr(0, 60), expected));
   }
+  bool has(const char* path) const { return document_.contains(ordered_json::json_pointer(path)); }
   const ordered_json& at(const char* path) const {
     const ordered_json::json_pointer pointer(path);
     if (!document_.contains(pointer))
@@ -84,6 +85,38 @@ class Reader {
   const ordered_json& document_;
   std::string name_;
 };
+
+ordered_json json_of(const CompassCalibration& c) {
+  ordered_json j;
+  j["method"] = c.method;
+  j["gain_puT"] = rows_of(c.correction.gain);
+  j["offset_uT"] = list_of(c.correction.offset);
+  j["field_uT"] = c.field_uT;
+  j["dip_rad"] = c.dip_rad;
+  j["norm_relative_std"] = c.residual.relative_std;
+  j["norm_relative_largest"] = c.residual.relative_largest;
+  j["hard_iron_sigma"] = c.left.hard_iron_sigma;
+  j["soft_iron_sigma"] = c.left.soft_iron_sigma;
+  return j;
+}
+
+CompassCalibration compass_of(const Reader& in) {
+  CompassCalibration c{.method = in.text("/compass/method"), .correction = {}, .residual = {}, .left = {}};
+  in.matrix("/compass/gain_puT", c.correction.gain);
+  c.correction.offset = in.vector("/compass/offset_uT");
+  c.field_uT = in.number("/compass/field_uT");
+  c.dip_rad = in.number("/compass/dip_rad");
+  c.residual = {.mean = 1,
+                .relative_std = in.number("/compass/norm_relative_std"),
+                .relative_largest = in.number("/compass/norm_relative_largest")};
+  c.left.hard_iron_sigma = in.number("/compass/hard_iron_sigma");
+  c.left.soft_iron_sigma = in.number("/compass/soft_iron_sigma");
+  const Matrix3d uneven = c.field_uT * c.correction.gain - Matrix3d::Identity();
+  if (!(uneven.cwiseAbs().maxCoeff() < 0.5))
+    in.refuse("/compass/gain_puT", in.at("/compass/gain_puT"),
+              "field_uT times gain_puT within 0.5 of the identity");
+  return c;
+}
 
 }  // namespace
 
@@ -145,6 +178,7 @@ std::string to_json(const SensorCalibration& c) {
   j["accelerometer"]["covariance"] = rows_of(c.accelerometer.covariance);
   j["gyroscope"]["offset_radps"] = list_of(c.gyroscope.offset_radps);
   j["gyroscope"]["offset_sigma_radps"] = list_of(c.gyroscope.offset_sigma_radps);
+  if (c.compass) j["compass"] = json_of(*c.compass);
   j["residual_rms_mps2"] = c.residual_rms_mps2;
   j["chi_square"] = c.chi_square;
   j["degrees_of_freedom"] = c.degrees_of_freedom;
@@ -169,6 +203,7 @@ SensorCalibration calibration_from_json(const std::string& text, const std::stri
   in.matrix("/accelerometer/covariance", c.accelerometer.covariance);
   c.gyroscope.offset_radps = in.vector("/gyroscope/offset_radps");
   c.gyroscope.offset_sigma_radps = in.vector("/gyroscope/offset_sigma_radps");
+  if (in.has("/compass")) c.compass = compass_of(in);
   c.residual_rms_mps2 = in.number("/residual_rms_mps2");
   c.chi_square = in.number("/chi_square");
   c.degrees_of_freedom = static_cast<int>(in.integer("/degrees_of_freedom"));

@@ -1,11 +1,14 @@
-// The calibration of an accelerometer and of a gyroscope's zero, with its uncertainty, and its file (JSON).
+// The calibration of an accelerometer, of a gyroscope's zero and of a compass, with its uncertainty, and its
+// file (JSON).
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 
+#include "estimator/compass/compass_calibration.h"
 #include "motion/kinematics/frames.h"
 
 namespace waverig::estimator {
@@ -65,6 +68,7 @@ struct SensorCalibration {
   double temperature_degC = std::numeric_limits<double>::quiet_NaN();
   AccelerometerCalibration accelerometer;
   GyroscopeCalibration gyroscope;
+  std::optional<CompassCalibration> compass;  // none: the unit has no magnetometer, or it was not calibrated
   double residual_rms_mps2 = 0;  // of the fit
   double chi_square = 0;         // residuals over their stated uncertainty
   int degrees_of_freedom = 0;

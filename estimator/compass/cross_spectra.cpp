@@ -1,11 +1,10 @@
 #include "estimator/compass/cross_spectra.h"
 
-#include <fftw3.h>
-
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <numbers>
+
+#include "estimator/real_transform.h"
 
 namespace waverig::estimator {
 namespace {
@@ -28,44 +27,15 @@ void detrend_and_taper(std::vector<double>& x, const std::vector<double>& window
     x[i] = window[i] * (x[i] - mean - slope * (static_cast<double>(i) - middle));
 }
 
+std::vector<Complex> transformed(RealTransform& transform, const std::vector<double>& x) {
+  std::copy(x.begin(), x.end(), transform.in().begin());
+  transform.execute();
+  std::vector<Complex> result(transform.frequencies());
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = transform[k];
+  return result;
+}
+
 }  // namespace
-
-// Real transform of any length. FFTW plans are the one thing in it that threads may not make at the same
-// time.
-class RealTransform {
- public:
-  explicit RealTransform(std::size_t n)
-      : n_(n), in_(fftw_alloc_real(n)), out_(fftw_alloc_complex(n / 2 + 1)) {
-    const std::lock_guard lock(mutex());
-    plan_ = fftw_plan_dft_r2c_1d(static_cast<int>(n), in_, out_, FFTW_ESTIMATE);
-  }
-  ~RealTransform() {
-    const std::lock_guard lock(mutex());
-    fftw_destroy_plan(plan_);
-    fftw_free(in_);
-    fftw_free(out_);
-  }
-  RealTransform(const RealTransform&) = delete;
-  RealTransform& operator=(const RealTransform&) = delete;
-
-  std::vector<Complex> operator()(const std::vector<double>& x) {
-    std::copy(x.begin(), x.end(), in_);
-    fftw_execute(plan_);
-    std::vector<Complex> result(n_ / 2 + 1);
-    for (std::size_t k = 0; k < result.size(); ++k) result[k] = {out_[k][0], out_[k][1]};
-    return result;
-  }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex one;
-    return one;
-  }
-  std::size_t n_;
-  double* in_;
-  fftw_complex* out_;
-  fftw_plan plan_;
-};
 
 std::vector<double> hann_window(std::size_t n) {
   std::vector<double> window(n);
@@ -99,7 +69,8 @@ CrossSpectra::~CrossSpectra() = default;
 void CrossSpectra::add(std::vector<double> up, std::vector<double> north, std::vector<double> east,
                        const std::vector<double>& window) {
   for (auto* x : {&up, &north, &east}) detrend_and_taper(*x, window);
-  const std::vector<Complex> z = (*transform_)(up), n = (*transform_)(north), e = (*transform_)(east);
+  const std::vector<Complex> z = transformed(*transform_, up), n = transformed(*transform_, north),
+                             e = transformed(*transform_, east);
   const double density = 2 * step_s_ / static_cast<double>(n_);
   for (std::size_t k = 0; k < z.size(); ++k) {
     zz[k] += density * std::norm(z[k]);

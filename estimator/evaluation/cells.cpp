@@ -27,6 +27,8 @@ void CellPooling::MeanAngle::add(double angle_rad) {
 }
 
 double CellPooling::MeanAngle::value() const {
+  constexpr double kNone = 0.1;  // of a full vector
+  if (!(std::hypot(north.value(), east.value()) > kNone)) return estimator::kUnknown;
   const double angle_rad = std::atan2(east.value(), north.value());
   return angle_rad < 0 ? angle_rad + 360 * kDegree : angle_rad;
 }
@@ -49,6 +51,9 @@ void CellPooling::MeanSea::add(const JudgedSea& judged) {
   peak_direction.add(s.peak_direction_rad);
   true_hm0.add(judged.true_hm0_m);
   true_tm02.add(judged.true_tm02_s);
+  true_direction.add(judged.direction.mean_direction_rad);
+  true_spread.add(judged.direction.spread_rad);
+  true_check.add(judged.direction.check_factor);
   flags |= s.flags;
 }
 
@@ -72,6 +77,7 @@ JudgedSea CellPooling::MeanSea::value() const {
   s.flags = flags;
   judged.true_hm0_m = true_hm0.value();
   judged.true_tm02_s = true_tm02.value();
+  judged.direction = {true_direction.value(), true_spread.value(), true_check.value()};
   return judged;
 }
 
@@ -91,7 +97,12 @@ void CellPooling::add(const RunResult& run) {
   gain_.add(run.heave_gain);
   lag_.add(run.heave_lag_s);
   sigma_ratio_.add(run.heave_sigma_ratio);
-  for (const JudgedSea& sea : run.seas) sea_.add(sea);
+  for (const JudgedSea& sea : run.seas) {
+    sea_.add(sea);
+    const double error_rad = sea.direction_error_rad();
+    direction_error_.add(error_rad);
+    direction_square_.add(error_rad * error_rad);
+  }
 }
 
 void CellPooling::close() {
@@ -102,6 +113,8 @@ void CellPooling::close() {
   cell_.heave_lag_s = lag_.value();
   cell_.heave_sigma_ratio = sigma_ratio_.value();
   cell_.sea = sea_.value();
+  cell_.direction_error_rad = direction_error_.value();
+  cell_.direction_rmse_rad = std::sqrt(direction_square_.value());
   std::vector<CellResult> cells = std::move(cells_);
   cells.push_back(std::move(cell_));
   *this = {};

@@ -24,7 +24,7 @@ class CellPooling {
     void add(double value);
     double value() const;
   };
-  // Mean of angles, as unit vectors.
+  // Mean of angles, as unit vectors; unknown where they are spread so far round that there is none.
   struct MeanAngle {
     Mean north, east;
     void add(double angle_rad);
@@ -32,8 +32,8 @@ class CellPooling {
   };
   struct MeanSea {
     Mean duration, hm0, hm0_variance, tp, tm01, tm02, tm_10, h13, h110, hmax, spread, check, true_hm0,
-        true_tm02;
-    MeanAngle direction, peak_direction;
+        true_tm02, true_spread, true_check;
+    MeanAngle direction, peak_direction, true_direction;
     std::int32_t flags = 0;
     void add(const JudgedSea& sea);
     JudgedSea value() const;
@@ -43,7 +43,8 @@ class CellPooling {
   bool open_ = false;
   CellResult cell_;
   HeightAccumulator heights_;
-  Mean bound_square_, heave_square_, true_hm0_, gain_, lag_, sigma_ratio_;
+  Mean bound_square_, heave_square_, true_hm0_, gain_, lag_, sigma_ratio_, direction_error_,
+      direction_square_;
   MeanSea sea_;
   std::vector<CellResult> cells_;
 };

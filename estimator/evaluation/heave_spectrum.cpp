@@ -1,55 +1,16 @@
 #include "estimator/evaluation/heave_spectrum.h"
 
-#include <fftw3.h>
-
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <memory>
-#include <mutex>
 #include <numbers>
 
 #include "estimator/evaluation/even_series.h"
+#include "estimator/real_transform.h"
 
 namespace waverig::evaluation {
 namespace {
 
 constexpr std::size_t kFewest = 16;
-
-// Real transform of one length; FFTW's planner serves one thread at a time.
-class RealTransform {
- public:
-  explicit RealTransform(std::size_t size)
-      : in_(fftw_alloc_real(size)), out_(fftw_alloc_complex(size / 2 + 1)) {
-    const std::lock_guard lock(planner());
-    plan_ = fftw_plan_dft_r2c_1d(static_cast<int>(size), in_.get(), out_.get(), FFTW_ESTIMATE);
-  }
-  ~RealTransform() {
-    const std::lock_guard lock(planner());
-    fftw_destroy_plan(plan_);
-  }
-  RealTransform(const RealTransform&) = delete;
-  RealTransform& operator=(const RealTransform&) = delete;
-
-  double& in(std::size_t i) { return in_.get()[i]; }
-  void execute() { fftw_execute(plan_); }
-  double power(std::size_t k) const {
-    const fftw_complex& z = out_.get()[k];
-    return z[0] * z[0] + z[1] * z[1];
-  }
-
- private:
-  struct Free {
-    void operator()(void* memory) const { fftw_free(memory); }
-  };
-  static std::mutex& planner() {
-    static std::mutex mutex;
-    return mutex;
-  }
-  std::unique_ptr<double, Free> in_;
-  std::unique_ptr<fftw_complex, Free> out_;
-  fftw_plan plan_;
-};
 
 // Offset and slope of a block, which a window alone lets through at the lowest frequencies.
 void remove_line(std::span<double> x) {
@@ -88,13 +49,13 @@ HeaveSpectrum spectrum_of(std::span<const std::int64_t> utime, std::span<const d
   }
   // Half-overlapped blocks, spread so that the last one ends with the record.
   const std::size_t blocks = std::max<std::size_t>(1, (2 * even.size()) / size - 1);
-  RealTransform transform(size);
+  estimator::RealTransform transform(size);
   std::vector<double> power(size / 2 + 1, 0.0), block(size);
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::size_t first = blocks == 1 ? 0 : b * (even.size() - size) / (blocks - 1);
     std::copy_n(even.begin() + static_cast<std::ptrdiff_t>(first), size, block.begin());
     remove_line(block);
-    for (std::size_t i = 0; i < size; ++i) transform.in(i) = window[i] * block[i];
+    for (std::size_t i = 0; i < size; ++i) transform.in()[i] = window[i] * block[i];
     transform.execute();
     for (std::size_t k = 0; k < power.size(); ++k)
       power[k] += transform.power(k) / static_cast<double>(blocks);

@@ -1,11 +1,13 @@
 // Results of a campaign: the one structure behind results.csv, results.json, the figures and the report.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "estimator/evaluation/true_direction.h"
 #include "estimator/types.h"
 
 namespace waverig::evaluation {
@@ -44,6 +46,11 @@ struct JudgedSea {
   estimator::SeaState sea;
   double true_hm0_m = estimator::kUnknown;    // 4 standard deviations of the true heave
   double true_tm02_s = estimator::kUnknown;   // 2 pi times the ratio of the standard deviations of heave and rate
+  TrueDirection direction{};                  // where the method told one
+
+  double direction_error_rad() const {  // told minus true, in [-pi, pi]; unknown where either is
+    return std::remainder(sea.mean_direction_rad - direction.mean_direction_rad, 360 * kDegree);
+  }
 };
 
 // One run, one method.
@@ -77,7 +84,10 @@ struct CellResult {
   double heave_gain = estimator::kUnknown;
   double heave_lag_s = estimator::kUnknown;
   double heave_sigma_ratio = estimator::kUnknown;
-  JudgedSea sea;   // mean of the sea states; directions averaged as unit vectors
+  JudgedSea
+      sea;  // mean of the sea states; directions averaged as unit vectors, unknown where they are all round
+  double direction_error_rad = estimator::kUnknown;  // mean of told minus true
+  double direction_rmse_rad = estimator::kUnknown;
 };
 
 struct CampaignResults {

@@ -51,6 +51,11 @@ constexpr Column kDirection[] = {
     {"spread_deg", [](const CellResult& c) { return c.sea.sea.spread_rad / kDegree; }},
     {"peak_direction_deg", [](const CellResult& c) { return c.sea.sea.peak_direction_rad / kDegree; }},
     {"check_factor", [](const CellResult& c) { return c.sea.sea.check_factor; }},
+    {"true_direction_deg", [](const CellResult& c) { return c.sea.direction.mean_direction_rad / kDegree; }},
+    {"direction_error_deg", [](const CellResult& c) { return c.direction_error_rad / kDegree; }},
+    {"direction_rmse_deg", [](const CellResult& c) { return c.direction_rmse_rad / kDegree; }},
+    {"true_spread_deg", [](const CellResult& c) { return c.sea.direction.spread_rad / kDegree; }},
+    {"true_check_factor", [](const CellResult& c) { return c.sea.direction.check_factor; }},
 };
 
 }  // namespace
@@ -62,7 +67,7 @@ std::string results_csv(std::span<const CellResult> cells) {
   };
   std::vector<std::span<const Column>> groups = {kAgreed, kMore};
   if (any_knows(kSea[0])) groups.emplace_back(kSea);
-  if (any_knows(kDirection[0])) groups.emplace_back(kDirection);
+  if (std::any_of(std::begin(kDirection), std::end(kDirection), any_knows)) groups.emplace_back(kDirection);
 
   std::string text = "period_s,height_cm,method,waves";
   for (const auto& group : groups)

@@ -29,6 +29,10 @@ class Writer {
     json_[key] = std::isfinite(value) ? Json(value) : Json(nullptr);
   }
   void operator()(const char* key, const std::string& value) { json_[key] = value; }
+  // Left out where unknown: what only some campaigns have.
+  void known(const char* key, double value) {
+    if (std::isfinite(value)) json_[key] = value;
+  }
   void operator()(const char* key, char value) { json_[key] = std::string(1, value); }
   template <std::integral Integer>
   void operator()(const char* key, Integer value) {
@@ -67,6 +71,7 @@ class Reader {
     if (!j.is_null() && !j.is_number()) throw wrong(key, "a number or null");
     value = j.is_null() ? estimator::kUnknown : j.get<double>();
   }
+  void known(const char* key, double& value) { (*this)(key, value); }
   void operator()(const char* key, std::string& value) {
     const Json& j = at(key);
     if (!j.is_string()) throw wrong(key, "a string");
@@ -172,6 +177,9 @@ void fields(auto& a, Is<JudgedSea> auto& judged) {
   a("flags", s.flags);
   a("true_hm0_m", judged.true_hm0_m);
   a("true_tm02_s", judged.true_tm02_s);
+  a.known("true_direction_rad", judged.direction.mean_direction_rad);
+  a.known("true_spread_rad", judged.direction.spread_rad);
+  a.known("true_check_factor", judged.direction.check_factor);
 }
 
 void fields(auto& a, Is<RunResult> auto& r) {
@@ -204,6 +212,8 @@ void fields(auto& a, Is<CellResult> auto& c) {
   a("heave_lag_s", c.heave_lag_s);
   a("heave_sigma_ratio", c.heave_sigma_ratio);
   a("sea", c.sea);
+  a.known("direction_error_rad", c.direction_error_rad);
+  a.known("direction_rmse_rad", c.direction_rmse_rad);
 }
 
 // Everything but calibration, cells and runs.

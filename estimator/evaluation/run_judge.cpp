@@ -1,5 +1,6 @@
 #include "estimator/evaluation/run_judge.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include "estimator/evaluation/bound.h"
 #include "estimator/evaluation/height_statistics.h"
 #include "estimator/evaluation/run_record.h"
+#include "estimator/evaluation/true_direction.h"
 #include "estimator/evaluation/zero_crossing.h"
 #include "lcmtypes/flags.h"
 #include "lcmtypes/phase.h"
@@ -71,7 +73,7 @@ void RunJudge::add(const run_t& message) {
 }
 
 void RunJudge::add(const truth_t& message) {
-  truth_.add(message.utime, message.heave_m, message.heave_rate_mps);
+  truth_.add(message.utime, message.heave_m, message.heave_rate_mps, {message.north_m, message.east_m});
   for (auto& [name, method] : methods_)
     if (!method.pending.empty()) settle(method);
 }
@@ -145,7 +147,10 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
   for (const estimator::SeaState& sea : method.seas) {
     const auto end = end_of(sea.start_utime, sea.duration_s);
     const TrueSea truth = end ? true_sea(truth_, sea.start_utime, *end) : TrueSea{};
-    result.seas.push_back({sea, truth.hm0_m, truth.tm02_s});
+    result.seas.push_back({.sea = sea, .true_hm0_m = truth.hm0_m, .true_tm02_s = truth.tm02_s});
+    if (end && std::isfinite(sea.mean_direction_rad))
+      result.seas.back().direction = true_direction(truth_, std::max(sea.start_utime, steady_begin_),
+                                                    ended_ ? std::min(*end, steady_end_) : *end);
   }
 
   if (method.waves.empty()) method.waves = counted_waves(method);
@@ -194,6 +199,8 @@ std::vector<RunResult> judge(const RunRecord& record, const JudgeSettings& setti
     truth.utime = sample.utime;
     truth.heave_m = sample.heave_m;
     truth.heave_rate_mps = sample.heave_rate_mps;
+    truth.north_m = sample.north_m;
+    truth.east_m = sample.east_m;
     judge.add(truth);
   }
   for (const auto& [method, samples] : record.heave)

@@ -5,10 +5,11 @@
 
 namespace waverig::evaluation {
 
-void TruthSeries::add(std::int64_t utime, double heave_m, double heave_rate_mps) {
+void TruthSeries::add(std::int64_t utime, double heave_m, double heave_rate_mps,
+                      const Eigen::Vector2d& horizontal_m) {
   if (!samples_.empty() && utime <= samples_.back().utime) return;
   if (!std::isfinite(heave_m) || !std::isfinite(heave_rate_mps)) return;
-  samples_.push_back({utime, heave_m, heave_rate_mps});
+  samples_.push_back({utime, heave_m, heave_rate_mps, horizontal_m.x(), horizontal_m.y()});
 }
 
 std::size_t TruthSeries::lower_bound(std::int64_t utime) const {
@@ -38,6 +39,16 @@ TruthSeries::Point TruthSeries::at(std::int64_t utime) const {
   const double c3 = h * (a.heave_rate_mps + b.heave_rate_mps) - 2 * rise;
   return {a.heave_m + x * (h * a.heave_rate_mps + x * (c2 + x * c3)),
           a.heave_rate_mps + x * (2 * c2 + 3 * x * c3) / h};
+}
+
+Eigen::Vector2d TruthSeries::horizontal_m(std::int64_t utime) const {
+  const std::size_t i = lower_bound(utime);
+  if (i == samples_.size() || (i == 0 && samples_[0].utime != utime))
+    return Eigen::Vector2d::Constant(estimator::kUnknown);
+  const Sample &b = samples_[i], &a = samples_[i == 0 ? 0 : i - 1];
+  if (b.utime == utime) return {b.north_m, b.east_m};
+  const double x = static_cast<double>(utime - a.utime) / static_cast<double>(b.utime - a.utime);
+  return {a.north_m + x * (b.north_m - a.north_m), a.east_m + x * (b.east_m - a.east_m)};
 }
 
 double TruthSeries::height_m(std::int64_t begin_utime, std::int64_t end_utime) const {

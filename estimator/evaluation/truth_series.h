@@ -1,4 +1,4 @@
-// The true heave of one run, kept as long as the run lasts and read between its samples.
+// The true motion of one run, kept as long as the run lasts and read between its samples.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,8 +9,9 @@ namespace waverig::evaluation {
 
 class TruthSeries {
  public:
-  // Samples that are not newer than the last one, or not finite, are left out.
-  void add(std::int64_t utime, double heave_m, double heave_rate_mps);
+  // Samples that are not newer than the last one, or not finite, are left out. horizontal_m: north, east.
+  void add(std::int64_t utime, double heave_m, double heave_rate_mps,
+           const Eigen::Vector2d& horizontal_m = Eigen::Vector2d::Zero());
 
   struct Point {
     double heave_m = estimator::kUnknown, heave_rate_mps = estimator::kUnknown;
@@ -18,6 +19,9 @@ class TruthSeries {
   // Cubic Hermite between the neighbours; NaN outside of the series. Cheap where times grow from call to
   // call.
   Point at(std::int64_t utime) const;
+
+  // North and east, linear between the neighbours; NaN outside of the series.
+  Eigen::Vector2d horizontal_m(std::int64_t utime) const;
 
   // Crest to trough of the true heave over [begin, end], extremes between the samples included; NaN where the
   // series does not cover the span.
@@ -32,7 +36,7 @@ class TruthSeries {
  private:
   struct Sample {
     std::int64_t utime;
-    double heave_m, heave_rate_mps;
+    double heave_m, heave_rate_mps, north_m, east_m;
   };
   // Index of the first sample at or after utime.
   std::size_t lower_bound(std::int64_t utime) const;

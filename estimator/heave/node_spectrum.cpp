@@ -1,10 +1,10 @@
 #include "estimator/heave/node_spectrum.h"
 
-#include <fftw3.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "estimator/real_transform.h"
 
 namespace waverig::estimator {
 namespace {
@@ -17,27 +17,8 @@ constexpr double kQuiet_hz = 0.12;       // somewhere below it there is no sea
 
 }  // namespace
 
-struct Periodogram::Transform {
-  explicit Transform(int block)
-      : n(block),
-        in(fftw_alloc_real(static_cast<std::size_t>(n))),
-        out(fftw_alloc_complex(static_cast<std::size_t>(n / 2 + 1))),
-        plan(fftw_plan_dft_r2c_1d(n, in, out, FFTW_ESTIMATE)) {}
-  ~Transform() {
-    fftw_destroy_plan(plan);
-    fftw_free(out);
-    fftw_free(in);
-  }
-  Transform(const Transform&) = delete;
-  Transform& operator=(const Transform&) = delete;
-  int n;
-  double* in;
-  fftw_complex* out;
-  fftw_plan plan;
-};
-
 Periodogram::Periodogram(int block)
-    : transform_(std::make_unique<Transform>(block)), density_(block / 2 + 1) {}
+    : transform_(std::make_unique<RealTransform>(static_cast<std::size_t>(block))), density_(block / 2 + 1) {}
 
 Periodogram::~Periodogram() = default;
 
@@ -48,17 +29,16 @@ double Periodogram::window(std::size_t i, std::size_t n) {
 const Eigen::VectorXd& Periodogram::of(std::span<const double> values, double dt_s) {
   double mean = 0, power = 0;
   for (const double x : values) mean += x / static_cast<double>(values.size());
-  std::fill(transform_->in, transform_->in + transform_->n, 0.0);
+  const std::span<double> in = transform_->in();
+  std::fill(in.begin(), in.end(), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double w = window(i, values.size());
-    transform_->in[i] = w * (values[i] - mean);
+    in[i] = w * (values[i] - mean);
     power += w * w;
   }
-  fftw_execute(transform_->plan);
-  for (Eigen::Index i = 0; i < density_.size(); ++i) {
-    const fftw_complex& c = transform_->out[i];
-    density_[i] = dt_s * (c[0] * c[0] + c[1] * c[1]) / power;
-  }
+  transform_->execute();
+  for (Eigen::Index i = 0; i < density_.size(); ++i)
+    density_[i] = dt_s * transform_->power(static_cast<std::size_t>(i)) / power;
   return density_;
 }
 

@@ -16,6 +16,8 @@
 
 namespace waverig::estimator {
 
+class RealTransform;
+
 // x(k) of the node between two intervals.
 inline double second_difference_m(const PathIncrement& before, const PathIncrement& after, double dt_s) {
   return dt_s * before.speed_mps + after.path_m - before.path_m;
@@ -34,8 +36,7 @@ class Periodogram {
   static double window(std::size_t i, std::size_t n);  // Hann, without zeros at the ends
 
  private:
-  struct Transform;
-  std::unique_ptr<Transform> transform_;
+  std::unique_ptr<RealTransform> transform_;
   Eigen::VectorXd density_;
 };
 

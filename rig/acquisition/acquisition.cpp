@@ -47,6 +47,7 @@ Sensitivities nominal_sensitivities(const UnitSettings& settings) {
       settings.accelerometer.sensitivity_VpMps2 * settings.front_end.transconductance_ApV;
   s.accel_range_mps2 = settings.accelerometer.range_mps2;
   s.gyro_count_radps = gyroscope_count_radps(settings.gyroscope);
+  if (settings.magnetometer) s.mag_count_uT = magnetometer_count_uT(*settings.magnetometer);
   return s;
 }
 
@@ -65,6 +66,11 @@ void Acquisition::apply(const estimator::AccelerometerCalibration& accelerometer
   accelerometer_ = estimator::AccelerometerCorrection(accelerometer);
   gyro_offset_radps_ = gyroscope.offset_radps;
   calibrated_ = true;
+}
+
+void Acquisition::apply(const estimator::CompassCalibration& compass) {
+  magnetic_gain_ = compass.field_uT * compass.correction.gain;
+  magnetic_offset_uT_ = compass.correction.offset;
 }
 
 void Acquisition::apply(const estimator::FrontEndCalibration& front_end,
@@ -136,8 +142,8 @@ estimator::ImuSample Acquisition::sample_of(const UnitCounts& counts) {
   sample.f_B = accelerometer_(f_m);
   sample.w_NB_B = sensitivities_.gyro_count_radps * counts.gyro.cast<double>() - gyro_offset_radps_;
   if ((counts.flags & flag::kNoMagnetometer) == 0)
-    sample.m_B_uT = magnetometer_.soft_iron *
-                    (sensitivities_.mag_count_uT * counts.mag.cast<double>() - magnetometer_.hard_iron_uT);
+    sample.m_B_uT =
+        magnetic_gain_ * (sensitivities_.mag_count_uT * counts.mag.cast<double>() - magnetic_offset_uT_);
   sample.temperature_degC = temperature_field_.value(counts.temperature);
   if (!calibrated_) sample.flags |= flag::kUncalibrated;
   return sample;

@@ -40,12 +40,6 @@ struct UnitSettings;
 // The data sheet's figures for a unit of that kind: what a laboratory knows before any calibration.
 Sensitivities nominal_sensitivities(const UnitSettings& settings);
 
-// m = soft_iron (reading - hard_iron).
-struct MagnetometerCorrection {
-  Matrix3d soft_iron = Matrix3d::Identity();
-  Vector3d hard_iron_uT = Vector3d::Zero();
-};
-
 class Acquisition {
  public:
   explicit Acquisition(const Sensitivities& sensitivities,
@@ -54,7 +48,8 @@ class Acquisition {
   // From now on samples are calibrated; without it they carry flag::kUncalibrated.
   void apply(const estimator::AccelerometerCalibration& accelerometer,
              const estimator::GyroscopeCalibration& gyroscope);
-  void apply(const MagnetometerCorrection& magnetometer) { magnetometer_ = magnetometer; }
+  // And the field is freed of the board's iron; its strength stays that of the calibration's place.
+  void apply(const estimator::CompassCalibration& compass);
   // From now on the converter's counts are worth what its own calibration says at the unit's temperature,
   // Kim, eqs. (1), (2); channels names those of x, y and z. Throws UserError where the calibration has none
   // of that name. What was found of the sensor with other worths (six positions) does not hold any more.
@@ -97,7 +92,8 @@ class Acquisition {
   double saturation_mps2_ = 0;
   estimator::AccelerometerCorrection accelerometer_;
   Vector3d gyro_offset_radps_ = Vector3d::Zero();
-  MagnetometerCorrection magnetometer_;
+  Matrix3d magnetic_gain_ = Matrix3d::Identity();
+  Vector3d magnetic_offset_uT_ = Vector3d::Zero();
   bool calibrated_ = false, new_record_ = true;
   std::int64_t first_seq_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lcmtypes/error.h"
+#include "rig/campaign/sensor_unit.h"
 #include "rig/nodes/acquisition_node.h"
 #include "rig/nodes/estimator_node.h"
 #include "rig/nodes/evaluator_node.h"
@@ -22,6 +23,8 @@ SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const Campai
   rig.drive.seed = plan.seed;
   rig.radius_m = plan.setting.height_m / 2;
   rig.noise_seed = plan.seed;
+  rig.arm.azimuth_rad += plan.repeat * campaign.sweep.turn_per_repeat_rad;
+  if (rig.unit.magnetometer) rig.unit.magnetometer->motor = motor_field(campaign, rig.arm.azimuth_rad);
   return rig;
 }
 
@@ -36,6 +39,7 @@ OrderedRun ordered_run(const RunPlan& plan) { return {plan.setting.period_s, pla
 Acquisition acquisition_of(const CampaignUnit& unit) {
   Acquisition acquisition(unit.sensitivities);
   if (unit.calibrated) acquisition.apply(unit.calibration.accelerometer, unit.calibration.gyroscope);
+  if (unit.calibration.compass) acquisition.apply(*unit.calibration.compass);
   return acquisition;
 }
 

@@ -1,18 +1,22 @@
 #include "rig/campaign/sensor_unit.h"
 
 #include <cmath>
+#include <optional>
 
 #include "motion/kinematics/random.h"
+#include "rig/acquisition/calibration_run.h"
 
 namespace waverig::rig {
 namespace {
 
-// Of q f^2 + c f^3, whose largest deviations from a straight line over +-R are drawn with the sheet's sigma: the slope at
-// -g against the chord from -g to g is off by -2 q g + 2 c g^2, with q = 4 x / R and c = 8 x / R^2.
-double slope_sigma(const AccelerometerSettings& sheet, double gravity_mps2) {
-  if (sheet.range_mps2 <= 0) return 0;
-  const double k = gravity_mps2 / sheet.range_mps2;
-  return sheet.nonlinearity_sigma * std::hypot(8 * k, 16 * k * k);
+std::optional<MagnetometerSettings> magnetometer_settings(const CampaignSettings& campaign) {
+  const SensorChoice& sensor = campaign.sensor;
+  if (sensor.magnetometer == "none") return std::nullopt;
+  MagnetometerSettings settings = sensor.magnetometer == "MAG3110" ? mag3110() : hmc5883l();
+  settings.hard_iron_sigma_uT = sensor.board_iron_uT.value_or(settings.hard_iron_sigma_uT);
+  settings.earth = campaign.magnetic.field;
+  if (campaign.sweep.mover == Mover::kArm) settings.motor = motor_field(campaign, campaign.arm.azimuth_rad);
+  return settings;
 }
 
 }  // namespace
@@ -21,9 +25,21 @@ UnitSettings unit_settings(const CampaignSettings& campaign) {
   UnitSettings unit = datasheet_unit();
   unit.accelerometer = mma7331lc();
   unit.gyroscope = fxas21000(campaign.sensor.gyroscope_range_degps);
-  unit.earth = local_earth(campaign.place);
+  unit.magnetometer = magnetometer_settings(campaign);
+  unit.earth = local_earth(campaign.rig_place);
   unit.power_up_utime = campaign.start_utime;
   return unit;
+}
+
+MotorFieldSettings motor_field(const CampaignSettings& campaign, double azimuth_rad) {
+  const MagneticSettings& m = campaign.magnetic;
+  const Quaterniond q_NP = quaternion_of({0, 0, azimuth_rad});
+  // Positions are told from where the sensor hangs when the arm's tip is at the orbit's centre.
+  const Vector3d hub_P(0, -m.motor_distance_m, -campaign.arm.lever_arm_G_m.z());
+  return {.hub_N_m = q_NP * hub_P,
+          .azimuth_rad = azimuth_rad,
+          .stator_moment_N_Am2 = q_NP * m.stator_moment_P_Am2,
+          .rotor_moment_Am2 = m.rotor_moment_Am2};
 }
 
 UnitParameters fresh_unit(const CampaignSettings& campaign) {
@@ -54,7 +70,7 @@ estimator::SensorKnowledge sensor_knowledge(const CampaignSettings& campaign,
   known.accel_scale_sigma =
       std::hypot(scale_now, sheet.scale_drift_sigma_pdegC * temperature_span_degC, age.accel_scale);
   known.accel_misalignment_sigma_rad = std::hypot(misalignment_now, age.accel_misalignment);
-  known.accel_slope_sigma = slope_sigma(sheet, known.gravity_mps2);
+  known.accel_slope_sigma = slope_sigma(unit, calibration.accelerometer);
   known.gyro_bias_sigma_radps = std::hypot(offset_now, unit.gyroscope.instability_sigma_radps, age.gyro_offset_radps);
   return known;
 }

@@ -9,6 +9,9 @@ namespace waverig::rig {
 // Of the type chosen, at the campaign's place.
 UnitSettings unit_settings(const CampaignSettings& campaign);
 
+// The motor as a magnetometer on the arm has it, the arm's plane at that azimuth.
+MotorFieldSettings motor_field(const CampaignSettings& campaign, double azimuth_rad);
+
 // The one unit that the campaign tests, drawn from its seed: as it is calibrated, and as it is measured with later.
 UnitParameters fresh_unit(const CampaignSettings& campaign);
 UnitParameters tested_unit(const CampaignSettings& campaign);

@@ -37,6 +37,8 @@ SweepSettings read_sweep(TomlTable sweep) {
     for (const double height : heights) s.settings.push_back({period, height * kCentimetre});
   s.settings_place = sweep.place_of("heights_cm");
   s.repeats = static_cast<int>(sweep.integer("repeats", 3, {1, 10000}));
+  if (s.mover == Mover::kArm && sweep.has("turn_per_repeat_deg"))
+    s.turn_per_repeat_rad = sweep.number("turn_per_repeat_deg", std::nullopt, {-360, 360}) * kDegree;
   s.profile.steady_s = sweep.number("duration_s", 300, {1, 864000});
   s.profile.ramp_periods = static_cast<int>(sweep.integer("ramp_periods", 2, {1, 100}));
   s.profile.rest_before_s = sweep.number("rest_before_s", 20, {0, 3600});
@@ -49,10 +51,40 @@ SweepSettings read_sweep(TomlTable sweep) {
   return s;
 }
 
-Place read_place(TomlTable place) {
-  return {.latitude_rad = place.number("latitude_deg", 36.37, {-89.9, 89.9}) * kDegree,
-          .longitude_rad = place.number("longitude_deg", 127.36, {-180, 360}) * kDegree,
-          .height_m = place.number("height_m", 70, {-500, 9000})};
+Place read_place(TomlTable& place, const Place& fallback) {
+  return {
+      .latitude_rad = place.number("latitude_deg", fallback.latitude_rad / kDegree, {-89.9, 89.9}) * kDegree,
+      .longitude_rad = place.number("longitude_deg", fallback.longitude_rad / kDegree, {-180, 360}) * kDegree,
+      .height_m = place.number("height_m", fallback.height_m, {-500, 9000})};
+}
+
+Vector3d read_vector(TomlTable& table, std::string_view key, const Vector3d& fallback, Range range) {
+  const auto v = table.numbers(key, std::vector<double>(fallback.begin(), fallback.end()), range);
+  if (v.size() != 3) table.refuse(key, "a list of 3 numbers");
+  return {v[0], v[1], v[2]};
+}
+
+// declination_rad: what the laboratory takes it to be.
+MagneticSettings read_magnetic(TomlTable rig, double declination_rad) {
+  MagneticSettings s;
+  TomlTable field = rig.table("field");
+  s.field.total_uT = field.number("total_uT", s.field.total_uT, {1, 100});
+  s.field.dip_rad = field.number("dip_deg", s.field.dip_rad / kDegree, {-85, 85}) * kDegree;
+  s.field.declination_rad = field.number("declination_deg", declination_rad / kDegree, {-180, 180}) * kDegree;
+  TomlTable motor = rig.table("motor");
+  s.motor_distance_m = motor.number("distance_m", s.motor_distance_m, {0.05, 10});
+  s.stator_moment_P_Am2 = read_vector(motor, "stator_moment_Am2", s.stator_moment_P_Am2, {-1000, 1000});
+  s.rotor_moment_Am2 = read_vector(motor, "rotor_moment_Am2", s.rotor_moment_Am2, {-1000, 1000});
+  return s;
+}
+
+CompassMethod read_compass(TomlTable calibration, CompassRunSettings& run) {
+  const std::string method = calibration.choice("compass", "ellipsoid", {"none", "max-min", "ellipsoid"});
+  run.steps = static_cast<int>(calibration.integer("compass_steps", run.steps, {8, 3600}));
+  run.record_s = calibration.number("compass_seconds_per_step", run.record_s, {0.05, 600});
+  return method == "none"      ? CompassMethod::kNone
+         : method == "max-min" ? CompassMethod::kMaxMin
+                               : CompassMethod::kEllipsoid;
 }
 
 RotatingArmSettings read_arm(TomlTable rig, double gravity_mps2) {
@@ -66,6 +98,7 @@ RotatingArmSettings read_arm(TomlTable rig, double gravity_mps2) {
   s.bearing_damping = gondola.number("bearing_damping", s.bearing_damping, {0, 10});
   s.forced_tilt_rad = gondola.number("forced_tilt_deg", 0, {0, 45}) * kDegree;
   s.forced_tilt_phase_rad = gondola.number("forced_tilt_phase_deg", 0, {-360, 360}) * kDegree;
+  s.lever_arm_G_m = read_vector(gondola, "sensor_from_pivot_m", s.lever_arm_G_m, {-5, 5});
   return s;
 }
 
@@ -88,11 +121,13 @@ SensorChoice read_sensor(TomlTable sensor) {
   s.accelerometer = sensor.choice("accelerometer", s.accelerometer, {"MMA7331LC"});
   s.gyroscope = sensor.choice("gyroscope", s.gyroscope, {"FXAS21000"});
   s.gyroscope_range_degps = sensor.number("gyroscope_range_degps", s.gyroscope_range_degps, {200, 1600});
+  s.magnetometer = sensor.choice("magnetometer", s.magnetometer, {"none", "MAG3110", "HMC5883L"});
+  if (sensor.has("board_iron_uT")) s.board_iron_uT = sensor.number("board_iron_uT", std::nullopt, {0, 1000});
   s.aged = sensor.boolean("aged", s.aged);
   return s;
 }
 
-CalibrationRunSettings read_calibration(TomlTable calibration, bool& enabled) {
+CalibrationRunSettings read_calibration(TomlTable& calibration, bool& enabled) {
   CalibrationRunSettings s;
   enabled = calibration.boolean("enabled", true);
   s.settle_s = calibration.number("settle_s", s.settle_s, {0, 600});
@@ -122,12 +157,26 @@ Campaign read_campaign(TomlFile file, const std::uint64_t* seed_override) {
   }
   s.sweep = read_sweep(root.table("sweep"));
   if (s.sweep.mover == Mover::kSea) read_sea(root.table("sea"), s.sweep);
-  s.place = read_place(root.table("place"));
+  TomlTable place = root.table("place");
+  s.place = read_place(place, {36.37 * kDegree, 127.36 * kDegree, 70});
   TomlTable rig = root.table("rig");
-  s.arm = read_arm(rig, gravity_mps2(s.place));
+  s.rig_place = s.place;
+  if (rig.has("place")) {
+    TomlTable really = rig.table("place");
+    s.rig_place = read_place(really, s.place);
+  }
+  s.arm = read_arm(rig, gravity_mps2(s.rig_place));
   s.envelope = read_envelope(rig);
   s.sensor = read_sensor(root.table("sensor"));
-  s.calibration = read_calibration(root.table("calibration"), s.calibrate);
+  TomlTable calibration = root.table("calibration");
+  s.calibration = read_calibration(calibration, s.calibrate);
+  if (s.sensor.magnetometer != "none" || place.has("declination_deg") || rig.has("field") ||
+      rig.has("motor") || calibration.has("compass")) {
+    s.estimator.compass.declination_rad = place.number("declination_deg", 0, {-180, 180}) * kDegree;
+    s.magnetic = read_magnetic(rig, s.estimator.compass.declination_rad);
+    s.compass = read_compass(calibration, s.compass_run);
+    s.compass_run.fixture_sigma_rad = s.calibration.fixture_sigma_rad;
+  }
   s.axis.limits = s.envelope.limits;
   s.start_utime = root.integer("start_utime", kVirtualStart_utime, {0, 9e15});
   root.refuse_unknown_keys();

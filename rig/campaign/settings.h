@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "motion/sea_state.h"
 #include "motion/simulated_drive.h"
 #include "rig/acquisition/calibration_run.h"
+#include "rig/acquisition/compass_run.h"
 #include "rig/mechanism/rotating_arm.h"
 #include "rig/settings/toml_reader.h"
 
@@ -33,6 +35,7 @@ struct SweepSettings {
   std::vector<Setting> settings;                 // by period, then height; on a sea peak period and Hm0
   std::string settings_place;                    // FILE:LINE of the heights, for complaints
   int repeats = 1;
+  double turn_per_repeat_rad = 0;                // of the pedestal between repeats
   motion::ProfileSettings profile;               // of every run on the arm; the period is the setting's
   motion::SeaSettings sea;                       // of every run on a sea; Tp, Hm0 and seed are the run's
   motion::FloatSettings buoy;
@@ -43,20 +46,36 @@ struct SensorChoice {
   std::string accelerometer = "MMA7331LC";
   std::string gyroscope = "FXAS21000";
   double gyroscope_range_degps = 200;
+  std::string magnetometer = "none";
+  std::optional<double> board_iron_uT;  // hard iron per axis, standard deviation; else the part's own
   bool aged = false;                             // since its calibration: HARDWARE drift added after it
 };
+
+// What a compass on the rig has to do with. Read where there is a magnetometer, and nowhere else.
+struct MagneticSettings {
+  EarthFieldSettings field;                         // where the rig stands; declination included
+  double motor_distance_m = 0.3;                    // from the arm's plane, along the axis
+  Vector3d stator_moment_P_Am2 = Vector3d::Zero();  // P: pedestal, x along the azimuth, z down
+  Vector3d rotor_moment_Am2 = Vector3d::Zero();     // turns with the arm, as MotorFieldSettings has it
+};
+
+enum class CompassMethod { kNone, kMaxMin, kEllipsoid };
 
 struct CampaignSettings {
   std::string name;
   std::uint64_t seed = 1;
   std::vector<std::string> methods;
   SweepSettings sweep;
-  Place place;
+  Place place;      // as the laboratory has it: calibration and methods
+  Place rig_place;  // where the simulated rig stands, other where the laboratory errs
+  MagneticSettings magnetic;
   RotatingArmSettings arm;
   motion::EnvelopeSettings envelope;             // of the rig; the sensor's part is filled in from the sensor
   SensorChoice sensor;
   bool calibrate = true;                         // six positions at the start
   CalibrationRunSettings calibration;
+  CompassMethod compass = CompassMethod::kNone;  // which of the two calibrations is applied
+  CompassRunSettings compass_run;
   motion::AxisSettings axis;
   motion::SimulatedDriveSettings drive;
   estimator::MethodSettings estimator;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "estimator/evaluation/results_io.h"
@@ -38,6 +40,23 @@ void in_parallel(int jobs, std::size_t count, Work work) {
   if (failure) std::rethrow_exception(failure);
 }
 
+// Both calibrations of the compass, of which the chosen one becomes the unit's. The arm lies still at its
+// angle 0.
+CompassRun calibrate_compass(const CampaignSettings& campaign, CampaignUnit& unit, std::int64_t begin_utime) {
+  CompassRunSettings settings = campaign.compass_run;
+  settings.begin_utime = begin_utime;
+  if (campaign.sweep.mover == Mover::kArm) {
+    settings.turntable_zero_rad = campaign.arm.azimuth_rad;
+    const double radius_m = campaign.sweep.settings.front().height_m / 2;
+    settings.position_N_m = quaternion_of({0, 0, campaign.arm.azimuth_rad}) * Vector3d(radius_m, 0, 0);
+  }
+  const CompassRun run = turn_compass(unit.settings, fresh_unit(campaign), acquisition_of(unit),
+                                      derived_seed(campaign.seed, "compass turns"), settings);
+  if (campaign.compass == CompassMethod::kMaxMin) unit.calibration.compass = run.max_min;
+  if (campaign.compass == CompassMethod::kEllipsoid) unit.calibration.compass = run.ellipsoid;
+  return run;
+}
+
 }  // namespace
 
 CalibratedUnit calibrate(const CampaignSettings& campaign) {
@@ -55,12 +74,18 @@ CalibratedUnit calibrate(const CampaignSettings& campaign) {
   settings.begin_utime = campaign.start_utime;
   settings.sensor_id = campaign.sensor.accelerometer + " + " + campaign.sensor.gyroscope;
   const double gravity = gravity_mps2(campaign.place);
-  const CalibrationRun run = run_six_positions(unit.settings, fresh, unit.sensitivities, gravity,
-                                               derived_seed(campaign.seed, "six positions"), settings);
+  CalibrationRun run = run_six_positions(unit.settings, fresh, unit.sensitivities, gravity,
+                                         derived_seed(campaign.seed, "six positions"), settings);
   unit.calibration = run.calibration;
   unit.methods.sensor = sensor_knowledge(campaign, run.calibration);
+  std::optional<CompassRun> compass;
+  if (unit.settings.magnetometer) compass = calibrate_compass(campaign, unit, run.end_utime);
+  run.calibration = unit.calibration;
   result.report_json = calibration_report(
       run, true_calibration(unit.settings, fresh, unit.sensitivities, run.calibration.temperature_degC));
+  if (compass)
+    result.report_json =
+        with_compass_report(result.report_json, *compass, fresh.magnetometer, campaign.magnetic.field);
   return result;
 }
 
@@ -97,11 +122,41 @@ evaluation::CampaignResults run_campaign(const Campaign& campaign, const Calibra
 
 namespace {
 
+bool tells_direction(const evaluation::CellResult& cell) { return std::isfinite(cell.sea.sea.spread_rad); }
+
+bool tells_direction_alone(const evaluation::CellResult& cell) {
+  return tells_direction(cell) && cell.statistics.waves == 0 && !std::isfinite(cell.sea.sea.hm0_m);
+}
+
+std::string shown_direction(double from_rad) {
+  return std::isfinite(from_rad) ? fmt::format("{:.2f}", from_rad / kDegree) : "all round";
+}
+
+// Empty where no method told a direction.
+std::string direction_table(const evaluation::CampaignResults& results) {
+  std::string rows;
+  for (const auto& cell : results.cells) {
+    const auto& sea = cell.sea.sea;
+    if (!tells_direction(cell)) continue;
+    rows += fmt::format(
+        "{:8.1f} {:9.1f}  {:<12} {:>13} {:11.2f} {:10.2f} {:10.2f} {:13.2f} {:8.3f} {:11.3f}\n",
+        cell.period_s, cell.height_m / kCentimetre, cell.method, shown_direction(sea.mean_direction_rad),
+        cell.direction_error_rad / kDegree, cell.direction_rmse_rad / kDegree, sea.spread_rad / kDegree,
+        cell.sea.direction.spread_rad / kDegree, sea.check_factor, cell.sea.direction.check_factor);
+  }
+  if (rows.empty()) return rows;
+  return fmt::format("\n{:>8} {:>9}  {:<12} {:>13} {:>11} {:>10} {:>10} {:>13} {:>8} {:>11}\n", "period s",
+                     "height cm", "method", "from deg true", "error deg", "rms deg", "spread deg",
+                     "its truth deg", "check", "its truth") +
+         rows;
+}
+
 std::string regular_table(const evaluation::CampaignResults& results) {
   std::string table = fmt::format("{:>8} {:>9}  {:<12} {:>6} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", "period s", "height cm",
                                   "method", "waves", "mean cm", "error %", "std cm", "bound cm", "U(k=2)", "rmse cm");
   for (const auto& cell : results.cells) {
     const auto& s = cell.statistics;
+    if (tells_direction_alone(cell)) continue;
     table += fmt::format("{:8.1f} {:9.1f}  {:<12} {:6} {:9.2f} {:8.2f} {:8.2f} {:9.2f} {:8.2f} {:7.2f}\n", cell.period_s,
                          cell.height_m / kCentimetre, cell.method, s.waves, s.mean_height_m / kCentimetre,
                          s.error_rate_percent, s.std_m / kCentimetre, s.bound_std_m / kCentimetre,
@@ -115,18 +170,20 @@ std::string sea_table(const evaluation::CampaignResults& results) {
   std::string table =
       fmt::format("{:>5} {:>7}  {:<12} {:>12} {:>12} {:>9} {:>8} {:>12} {:>13}\n", "Tp s", "Hm0 cm", "method",
                   "heave rms cm", "% of Hm0", "gain", "lag s", "Hm0 error %", "Tm02 error %");
-  for (const auto& cell : results.cells)
+  for (const auto& cell : results.cells) {
+    if (tells_direction_alone(cell)) continue;
     table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:9.4f} {:8.3f} {:12.2f} {:13.2f}\n", cell.period_s,
                          cell.height_m / kCentimetre, cell.method, cell.heave_rmse_m / kCentimetre,
                          100 * cell.heave_rmse_m / cell.true_hm0_m, cell.heave_gain, cell.heave_lag_s,
                          percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m), percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s));
+  }
   return table;
 }
 
 }  // namespace
 
 std::string results_table(const evaluation::CampaignResults& results, Mover mover) {
-  return mover == Mover::kArm ? regular_table(results) : sea_table(results);
+  return (mover == Mover::kArm ? regular_table(results) : sea_table(results)) + direction_table(results);
 }
 
 }  // namespace waverig::rig

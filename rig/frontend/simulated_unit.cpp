@@ -57,7 +57,9 @@ UnitParameters draw_unit(const UnitSettings& settings, std::uint64_t unit_seed) 
   UnitParameters unit{draw_accelerometer(settings.accelerometer, unit_seed),
                       draw_gyroscope(settings.gyroscope, unit_seed),
                       {},
-                      Vector3d::Ones()};
+                      Vector3d::Ones(),
+                      {}};
+  if (settings.magnetometer) unit.magnetometer = draw_magnetometer(*settings.magnetometer, unit_seed);
   const FrontEndSettings& f = settings.front_end;
   RandomStream random(unit_seed, "front end unit");
   for (int i = 0; i < 3; ++i) {
@@ -103,6 +105,7 @@ SimulatedUnit::SimulatedUnit(const UnitSettings& settings, const UnitParameters&
   if (!(settings.sample_interval_s >= 1e-4 && settings.sample_interval_s <= 10))
     throw UserError(fmt::format("sensor unit: sample_interval_s = {}: expected 0.0001 to 10 s",
                                 settings.sample_interval_s));
+  if (settings.magnetometer) magnetometer_.emplace(*settings.magnetometer, unit.magnetometer, noise_seed);
   for (std::size_t i = 0; i < kSlots.size(); ++i) slot_[i] = layout.index_of(kSlots[i]);
 }
 
@@ -128,7 +131,8 @@ void SimulatedUnit::integrate(const Felt& from, const Felt& to, double piece_s) 
 }
 
 void SimulatedUnit::end_interval(std::vector<std::uint8_t>& out) {
-  std::int64_t status = (gyro_.saturated ? kStatusGyroLimit : 0) | (magnetometer_ ? kStatusMagnetometer : 0);
+  std::int64_t status = gyro_.saturated ? kStatusGyroLimit : 0;
+  if (magnetometer_ && !magnetometer_->saturated()) status |= kStatusMagnetometer;
   for (std::size_t i = 0; i < 3; ++i) {
     const ConverterCounts counts = converter_[i].take();
     raw_[slot_[kAccel + 2 * i]] = counts.positive;
@@ -168,7 +172,7 @@ void SimulatedUnit::step(const BodyMotion& motion, double dt_s, std::vector<std:
         !sampled_ && middle_s <= piece_s + kInstant) {
       const Felt felt = at(done_s + middle_s);
       gyro_ = gyroscope_.sample(felt.w_B, felt.f_B, temperature_degC_);
-      if (magnetometer_) mag_ = magnetometer_(motion);
+      if (magnetometer_) mag_ = magnetometer_->sample(motion);
       sampled_ = true;
     }
     done_s += piece_s;

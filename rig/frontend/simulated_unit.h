@@ -3,8 +3,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "motion/kinematics/body_motion.h"
@@ -13,6 +13,7 @@
 #include "rig/frontend/frame_codec.h"
 #include "rig/sensors/accelerometer.h"
 #include "rig/sensors/gyroscope.h"
+#include "rig/sensors/magnetometer.h"
 
 namespace waverig::rig {
 
@@ -38,6 +39,7 @@ inline LocalEarth flat_earth(double gravity_mps2) {
 struct UnitSettings {
   AccelerometerSettings accelerometer;
   GyroscopeSettings gyroscope;
+  std::optional<MagnetometerSettings> magnetometer;  // none: the unit has no compass
   FrontEndSettings front_end;
   TemperatureSettings temperature;
   double sample_interval_s = 0.01;
@@ -57,6 +59,7 @@ struct UnitParameters {
   GyroscopeParameters gyroscope;
   std::array<ConverterChannelSettings, 3> converter;
   Vector3d transconductance_ApV = Vector3d::Ones();
+  MagnetometerParameters magnetometer;
 };
 
 UnitParameters draw_unit(const UnitSettings& settings, std::uint64_t unit_seed);
@@ -70,7 +73,7 @@ struct AgeingSettings {
 };
 UnitParameters aged(const UnitParameters& unit, const AgeingSettings& ageing, std::uint64_t seed);
 
-// Bits of the frame's status field.
+// Bits of the frame's status field; the third: there is a magnetometer, and it is not beyond its range.
 inline constexpr std::int64_t kStatusOverload = 1, kStatusGyroLimit = 2, kStatusMagnetometer = 4;
 
 class SimulatedUnit {
@@ -78,10 +81,6 @@ class SimulatedUnit {
   // noise_seed: of what differs from run to run; the unit itself stays the one given.
   SimulatedUnit(const UnitSettings& settings, const UnitParameters& unit, std::uint64_t noise_seed,
                 const FrameLayout& layout = default_frame_layout());
-
-  // A third sensor: from the motion in the middle of an interval to counts.
-  using Magnetometer = std::function<Eigen::Vector3i(const BodyMotion&)>;
-  void attach(Magnetometer magnetometer) { magnetometer_ = std::move(magnetometer); }
 
   // The motion as it is dt_s after the last call, linear between; appends a frame for each sample that became
   // due. The first call, with dt_s = 0, sets the beginning of the first counting interval.
@@ -109,7 +108,7 @@ class SimulatedUnit {
   Gyroscope gyroscope_;
   std::array<ChargeBalanceConverter, 3> converter_;
   Vector3d current_ApMps2_;  // sensor and stage: current a specific force makes
-  Magnetometer magnetometer_;
+  std::optional<Magnetometer> magnetometer_;
   std::array<std::size_t, 16> slot_;  // where each value stands in the frame
   std::vector<std::int64_t> raw_;
 

@@ -63,6 +63,12 @@ TEST(SeaState, SpreadingHasTheMeanAndWidthOfCos2s) {
         draw_components({.direction_from_rad = 4, .spreading_s = s, .components = 20000, .seed = 3}));
     EXPECT_NEAR(m.mean_direction_from_rad, 4, 0.04);
     EXPECT_NEAR(m.spread_rad, std::sqrt(2 / (s + 1)), 0.02);  // r1 = s / (s + 1)
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {        // and of a sea of few components
+      const SeaMoments few =
+          moments_of(draw_components({.direction_from_rad = 4, .spreading_s = s, .seed = seed}));
+      EXPECT_NEAR(few.mean_direction_from_rad, 4, 1e-9);
+      EXPECT_NEAR(few.spread_rad, std::sqrt(2 / (s + 1)), 0.017);
+    }
   }
   const SeaMoments m = moments_of(draw_components({.direction_from_rad = 1}));
   EXPECT_NEAR(m.mean_direction_from_rad, 1, 1e-12);

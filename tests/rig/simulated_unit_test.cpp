@@ -182,28 +182,44 @@ TEST(SimulatedUnit, IsTheSameForTheSameSeedsToTheByte) {
   EXPECT_NE(run(1, 2), run(2, 2));
 }
 
-TEST(SimulatedUnit, CarriesAThirdSensor) {
-  SimulatedUnit unit(ideal_unit(), draw_unit(ideal_unit(), 1), 1);
-  unit.attach([](const BodyMotion& m) { return Eigen::Vector3i(-7, 300, static_cast<int>(m.utime % 1000)); });
-  Acquisition acquisition(nominal_sensitivities(ideal_unit()));
-  std::vector<std::uint8_t> bytes;
-  BodyMotion m;
-  unit.step(m, 0, bytes);
-  for (int k = 0; k < 5; ++k) {
-    m.utime += kStep_us;
-    unit.step(m, kStep, bytes);
-  }
-  int samples = 0;
-  acquisition.add(bytes, [&](const UnitCounts& c, const estimator::ImuSample& s) {
-    EXPECT_EQ(c.mag.head<2>(), Eigen::Vector2i(-7, 300));
-    EXPECT_NEAR(s.m_B_uT.y(), 30, 1e-12);
+UnitSettings with_magnetometer() {
+  UnitSettings settings = ideal_unit();
+  settings.magnetometer = MagnetometerSettings{};
+  settings.magnetometer->lsb_uT = 0.1;
+  settings.magnetometer->earth = {.total_uT = 50, .dip_rad = 30 * kDegree, .declination_rad = 90 * kDegree};
+  return settings;
+}
+
+TEST(SimulatedUnit, CarriesAMagnetometerWhereOneIsChosen) {
+  const UnitSettings settings = with_magnetometer();
+  const auto samples = record(settings, draw_unit(settings, 1), 0.1, level).samples;
+  ASSERT_GT(samples.size(), 5u);
+  for (const estimator::ImuSample& s : samples) {
     EXPECT_EQ(s.flags & flag::kNoMagnetometer, 0);
-    ++samples;
-  });
-  EXPECT_EQ(samples, 1);
-  EXPECT_NE(
-      record(ideal_unit(), draw_unit(ideal_unit(), 1), 0.1, level).samples[0].flags & flag::kNoMagnetometer,
-      0);
+    EXPECT_LT((s.m_B_uT - Vector3d(0, 50 * std::cos(30 * kDegree), 25)).cwiseAbs().maxCoeff(), 0.051);
+  }
+  const auto without = record(ideal_unit(), draw_unit(ideal_unit(), 1), 0.1, level).samples;
+  EXPECT_NE(without[0].flags & flag::kNoMagnetometer, 0);
+  EXPECT_TRUE(without[0].m_B_uT.isZero(0));
+}
+
+TEST(SimulatedUnit, SaysThereIsNoFieldWhereTheMagnetometerIsBeyondItsRange) {
+  UnitSettings settings = with_magnetometer();
+  settings.magnetometer->largest_count = 200;  // 20 uT
+  const auto samples = record(settings, draw_unit(settings, 1), 0.1, level).samples;
+  EXPECT_NE(samples[0].flags & flag::kNoMagnetometer, 0);
+}
+
+TEST(SimulatedUnit, SaysTheSameOfItsOtherSensorsWithAMagnetometerAndWithout) {
+  UnitSettings without = datasheet_unit(), with = datasheet_unit();
+  with.magnetometer = mag3110();
+  const auto a = record(without, draw_unit(without, 3), 0.2, level).samples;
+  const auto b = record(with, draw_unit(with, 3), 0.2, level).samples;
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].f_B, b[i].f_B);
+    EXPECT_EQ(a[i].w_NB_B, b[i].w_NB_B);
+  }
 }
 
 TEST(SimulatedUnit, AgeMovesAUnitAsFarAsStated) {
