@@ -11,11 +11,11 @@
 namespace waverig::estimator {
 namespace {
 
-using Matrix18d = Eigen::Matrix<double, 18, 18>;
-using Vector18d = Eigen::Matrix<double, 18, 1>;
-// 12 or 15 columns: M row by row, b, and where the model has it q.
-using Design = Eigen::Matrix<double, 18, Eigen::Dynamic, 0, 18, 15>;
-using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 15, 1>;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kRows =
+    18;  // of the design matrix; its 12 or 15 columns: M row by row, b, and where the model has it q
 
 constexpr int kBendIterations = 4;  // each gains the factor q g, some 1e-3
 
@@ -26,7 +26,7 @@ Matrix3d cross(const Vector3d& v) {
 }
 
 // Rows of one position: reading_i = M_i1 f_1 + M_i2 f_2 + M_i3 f_3 + b_i + q_i u_i^2.
-void fill_rows(Design& A, int position, const Vector3d& f_B, const Vector3d& u) {
+void fill_rows(MatrixXd& A, int position, const Vector3d& f_B, const Vector3d& u) {
   for (int i = 0; i < 3; ++i) {
     const int row = 3 * position + i;
     A.row(row).setZero();
@@ -36,7 +36,7 @@ void fill_rows(Design& A, int position, const Vector3d& f_B, const Vector3d& u) 
   }
 }
 
-AccelerometerCalibration calibration_of(const Unknowns& x) {
+AccelerometerCalibration calibration_of(const VectorXd& x) {
   AccelerometerCalibration c;
   c.M = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(x.data());
   c.b_mps2 = x.segment<3>(9);
@@ -46,12 +46,12 @@ AccelerometerCalibration calibration_of(const Unknowns& x) {
 
 // Sum of squares of the residuals in units of their uncertainty, over the directions that the fit leaves
 // free.
-double chi_square_of(const Vector18d& residual, const Matrix18d& readings_covariance,
-                     const Matrix18d& remover, int unknowns) {
-  const Matrix18d covariance = remover * readings_covariance * remover.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix18d> eigen(covariance);
+double chi_square_of(const VectorXd& residual, const MatrixXd& readings_covariance, const MatrixXd& remover,
+                     int unknowns) {
+  const MatrixXd covariance = remover * readings_covariance * remover.transpose();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(covariance);
   double sum = 0;
-  for (int i = unknowns; i < 18; ++i) {  // ascending: the last ones are not zero by construction
+  for (int i = unknowns; i < kRows; ++i) {  // ascending: the last ones are not zero by construction
     const double variance = eigen.eigenvalues()[i];
     const double part = eigen.eigenvectors().col(i).dot(residual);
     if (variance > 0) sum += part * part / variance;
@@ -87,9 +87,9 @@ Matrix3d PositionRecorder::mean_covariance() const {
 SixPositionFit fit_six_positions(const std::array<PositionReading, 6>& readings, double fixture_sigma_rad,
                                  SixPositionModel model) {
   const bool bent = model == SixPositionModel::kBent;
-  Design A(18, bent ? 15 : 12);
-  Vector18d y;
-  Unknowns x;
+  MatrixXd A(kRows, bent ? 15 : 12);
+  VectorXd y(kRows), x;
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
   SixPositionFit fit;
   for (int iteration = 0; iteration < (bent ? kBendIterations : 1); ++iteration) {
     for (int k = 0; k < 6; ++k) {
@@ -99,29 +99,29 @@ SixPositionFit fit_six_positions(const std::array<PositionReading, 6>& readings,
       fill_rows(A, k, reading.f_B, u);
       y.segment<3>(3 * k) = reading.mean_mps2;
     }
-    Eigen::ColPivHouseholderQR<Design> qr(A);
-    if (!y.allFinite() || qr.rank() < A.cols())
+    decomposition.compute(A);
+    if (!y.allFinite() || decomposition.rank() < A.cols())
       throw UserError("six-position calibration: positions: expected each axis once up and once down");
-    x = qr.solve(y);
+    x = decomposition.solve(y);
     fit.calibration = calibration_of(x);
   }
 
   // What the readings are worth: scatter, and the fixture's miss d, which moves f by f x d.
-  Matrix18d S = Matrix18d::Zero();
+  MatrixXd S = MatrixXd::Zero(kRows, kRows);
   for (int k = 0; k < 6; ++k) {
     const PositionReading& reading = readings[static_cast<std::size_t>(k)];
     const Matrix3d J = fit.calibration.M * cross(reading.f_B) * fixture_sigma_rad;
     S.block<3, 3>(3 * k, 3 * k) = reading.covariance + J * J.transpose();
   }
   const int n = static_cast<int>(A.cols());
-  const Eigen::MatrixXd solver = A.completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd solver = decomposition.pseudoInverse();
   fit.calibration.covariance.topLeftCorner(n, n) = solver * S * solver.transpose();
 
-  const Vector18d residual = y - A * x;
+  const VectorXd residual = y - A * x;
   for (int k = 0; k < 6; ++k) fit.residual_mps2[static_cast<std::size_t>(k)] = residual.segment<3>(3 * k);
-  fit.residual_rms_mps2 = std::sqrt(residual.squaredNorm() / 18);
-  fit.degrees_of_freedom = 18 - n;
-  fit.chi_square = chi_square_of(residual, S, Matrix18d::Identity() - A * solver, n);
+  fit.residual_rms_mps2 = std::sqrt(residual.squaredNorm() / kRows);
+  fit.degrees_of_freedom = kRows - n;
+  fit.chi_square = chi_square_of(residual, S, MatrixXd::Identity(kRows, kRows) - A * solver, n);
   return fit;
 }
 
@@ -134,7 +134,7 @@ CalibrationError error_against(const AccelerometerCalibration& found, const Acce
   const Eigen::Matrix<double, 15, 1> error = unknowns_of(found) - unknowns_of(truth);
   // Scaled to a unit diagonal, with 1 where nothing is stated: the unknowns differ in unit by orders of
   // magnitude.
-  Matrix15d scaled = Matrix15d::Identity();
+  MatrixXd scaled = MatrixXd::Identity(15, 15);
   CalibrationError result;
   for (int i = 0; i < 15; ++i) {
     if (!(found.covariance(i, i) > 0)) continue;
@@ -144,7 +144,7 @@ CalibrationError error_against(const AccelerometerCalibration& found, const Acce
       if (found.covariance(k, k) > 0)
         scaled(i, k) = found.covariance(i, k) / std::sqrt(found.covariance(i, i) * found.covariance(k, k));
   }
-  result.chi_square = result.over_sigma.dot(Eigen::LDLT<Matrix15d>(scaled).solve(result.over_sigma));
+  result.chi_square = result.over_sigma.dot(Eigen::LDLT<MatrixXd>(scaled).solve(result.over_sigma));
   return result;
 }
 
