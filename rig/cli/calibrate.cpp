@@ -9,6 +9,7 @@
 #include "estimator/calibration/rotation_fit.h"
 #include "estimator/calibration/six_position_record.h"
 #include "lcmtypes/error.h"
+#include "lcmtypes/flags.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/recording.h"
 
@@ -17,6 +18,8 @@ namespace {
 
 constexpr const char* kSixPositionsWay = "six-positions";
 constexpr const char* kRotationWay = "rotation";
+constexpr const char* kEllipsoidWay = "ellipsoid";
+constexpr const char* kMaxMinWay = "max-min";
 
 struct AccelerometerArguments {
   std::string recording, out, way = kSixPositionsWay, sensor_id = "unnamed";
@@ -87,6 +90,65 @@ int calibrate_accelerometer(const AccelerometerArguments& arguments) {
   return 0;
 }
 
+struct CompassArguments {
+  std::string recording, out, base, way = kEllipsoidWay;
+};
+
+void print_way(const char* name, const estimator::CompassCalibration& c, bool chosen) {
+  fmt::print(
+      "{:<10} norm constant within {:.2f} % rms, {:.2f} % at most; field {:.2f} uT, dip {:.2f} deg{}\n", name,
+      100 * c.residual.relative_std, 100 * c.residual.relative_largest, c.field_uT, c.dip_rad / kDegree,
+      chosen ? "   <- kept" : "");
+}
+
+int calibrate_compass(const CompassArguments& arguments) {
+  estimator::SensorCalibration calibration;
+  if (!arguments.base.empty()) calibration = estimator::load_calibration(arguments.base);
+  const estimator::AccelerometerCorrection correct(calibration.accelerometer);
+  std::vector<Vector3d> raw_uT, f_B;
+  SampleSource source = samples_of(arguments.recording);
+  for (estimator::ImuSample sample; source(sample);) {
+    if ((sample.flags & flag::kNoMagnetometer) != 0 || !sample.m_B_uT.allFinite()) continue;
+    if (!raw_uT.empty() && sample.m_B_uT == raw_uT.back()) continue;  // slower than the inertial sensors
+    raw_uT.push_back(sample.m_B_uT);
+    f_B.push_back(correct(sample.f_B));
+  }
+  if (raw_uT.empty())
+    throw UserError(fmt::format("{}: no magnetic field; expected columns mx,my,mz", arguments.recording));
+  try {
+    const auto max_min = estimator::max_min_compass(raw_uT, f_B),
+               ellipsoid = estimator::ellipsoid_compass(raw_uT, f_B);
+    const bool by_ellipsoid = arguments.way == kEllipsoidWay;
+    fmt::print("{} readings\n", raw_uT.size());
+    print_way(kMaxMinWay, max_min, !by_ellipsoid);
+    print_way(kEllipsoidWay, ellipsoid, by_ellipsoid);
+    calibration.compass = by_ellipsoid ? ellipsoid : max_min;
+  } catch (const UserError& error) {
+    throw UserError(fmt::format("{}: {}", arguments.recording, error.what()));
+  }
+  estimator::store_calibration(calibration, arguments.out);
+  fmt::print("Calibration: {}\n", arguments.out);
+  return 0;
+}
+
+void add_compass(CLI::App& command, Command& chosen) {
+  auto arguments = std::make_shared<CompassArguments>();
+  CLI::App* compass = command.add_subcommand("compass", "Hard and soft iron of the magnetometer");
+  compass
+      ->add_option("recording", arguments->recording,
+                   "Sample CSV with mx,my,mz, plain or .gz, or LCM event log: the unit turned slowly through "
+                   "all attitudes")
+      ->required();
+  compass->add_option("--out", arguments->out, "Calibration file to write (JSON)")->required();
+  compass->add_option("--base", arguments->base, "Calibration file of the same unit, kept and completed");
+  compass->add_option("--from", arguments->way, "ellipsoid: full fit; max-min: Cho's method, eq. (8)")
+      ->check(CLI::IsMember({kEllipsoidWay, kMaxMinWay}))
+      ->capture_default_str();
+  compass->footer(
+      "Example:\n  waverig calibrate compass turned.csv.gz --base unit7.json --out unit7-compass.json");
+  compass->callback([arguments, &chosen] { chosen = [arguments] { return calibrate_compass(*arguments); }; });
+}
+
 }  // namespace
 
 void add_calibrate(CLI::App& app, Command& chosen) {
@@ -120,6 +182,7 @@ void add_calibrate(CLI::App& app, Command& chosen) {
       "  waverig estimate recording.csv.gz --calibration unit7.json --out results/mine");
   accelerometer->callback(
       [arguments, &chosen] { chosen = [arguments] { return calibrate_accelerometer(*arguments); }; });
+  add_compass(*command, chosen);
   command->footer("Example:\n  waverig calibrate accelerometer six-sides.csv --out unit7.json");
 }
 

@@ -32,6 +32,7 @@ struct EstimateArguments {
   bool netcdf = false;
   double rest_s = 0;
   double gravity_mps2 = kStandardGravity;
+  double declination_deg = 0;
 };
 
 // The unit rests at the start of the record: what the gyroscope reads there is its bias.
@@ -136,11 +137,15 @@ void check_units(double mean_force_mps2, const EstimateArguments& arguments) {
 
 int estimate(const EstimateArguments& arguments) {
   SampleSource source = samples_of(arguments.input);
-  if (!arguments.calibration.empty())
-    source = calibrated(std::move(source), estimator::load_calibration(arguments.calibration));
-  if (arguments.rest_s > 0) source = without_gyro_bias(std::move(source), arguments.rest_s, arguments.input);
   estimator::MethodSettings settings;
   settings.sensor.gravity_mps2 = arguments.gravity_mps2;
+  settings.compass.declination_rad = arguments.declination_deg * kDegree;
+  if (!arguments.calibration.empty()) {
+    const auto calibration = estimator::load_calibration(arguments.calibration);
+    source = calibrated(std::move(source), calibration);
+    if (calibration.compass) settings.compass.calibration = calibration.compass->correction;
+  }
+  if (arguments.rest_s > 0) source = without_gyro_bias(std::move(source), arguments.rest_s, arguments.input);
   const auto method = estimator::make_method(arguments.method, settings);
 
   const fs::path out = arguments.out;
@@ -209,6 +214,10 @@ void add_estimate(CLI::App& app, Command& chosen) {
   command->add_option("--gravity", arguments->gravity_mps2, "Local gravity, m/s^2")
       ->check(CLI::Range(9.7, 9.9))
       ->capture_default_str();
+  command
+      ->add_option("--declination", arguments->declination_deg,
+                   "True less magnetic north, degrees, east positive")
+      ->check(CLI::Range(-180.0, 180.0));
   command->add_flag("--netcdf", arguments->netcdf, "Write heave, waves and spectrum as record.nc (CF) too");
   command->footer(
       "The sample CSV has the header utime,ax,ay,az,gx,gy,gz[,mx,my,mz][,temperature]: microseconds, m/s^2, "

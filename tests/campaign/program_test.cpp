@@ -83,6 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"TruncatedLog", "estimate truncated.lcm --out out", "truncated.lcm"},
         BadCall{"UnknownMethod", "estimate broken_row.csv --method magic --out out", "magic"},
         BadCall{"NotSixPositions", "calibrate accelerometer level.csv --out out", "level.csv: six-position calibration: x up held still for 0 s"},
+        BadCall{"NoMagnetometer", "calibrate compass level.csv --out out", "level.csv: no magnetic field"},
         BadCall{"NoCalibration", "estimate level.csv --calibration no.toml --out out", "no.toml"},
         BadCall{"TimeStandsStill", "evaluate heave.csv --out out", "heave.csv, line 3, column utime"}),
     [](const auto& instance) { return instance.param.name; });
