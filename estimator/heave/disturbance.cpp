@@ -9,7 +9,8 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kTiltCorrelation_s = 1.0;     // of what a tilt error does to the vertical
-constexpr double kOffsetCorrelation_s = 0.25;  // of what a turned offset does to it
+constexpr double kOffsetCorrelation_s = 0.05;  // of what a turned offset does to it
+constexpr double kSteadyTilt_rad = 0.25 * kDegree;
 constexpr double kSaturatedNoise_m2ps3 = 1.0;  // several m/s^2 for tenths of a second
 constexpr double kSlowestSea_radps = 0.2;
 
@@ -32,7 +33,8 @@ AttitudeSettings attitude_settings(const SensorKnowledge& sensor) {
 }
 
 double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, double gravity_mps2) {
-  const double tilt2 = square(attitude.tilt_sigma_rad);
+  // A settled attitude errs slowly: what it lets in lies at the waves' own frequencies and makes no drift.
+  const double tilt2 = std::max(square(attitude.tilt_sigma_rad) - square(kSteadyTilt_rad), 0.0);
   const double noise = tilt2 * attitude.a_N.head<2>().squaredNorm() + square(gravity_mps2 * tilt2);
   return kTiltCorrelation_s * noise + (flags & flag::kSaturation ? kSaturatedNoise_m2ps3 : 0.0);
 }
@@ -43,12 +45,12 @@ double turned_offset_m2ps3(const AttitudeSample& attitude, const Motion& motion,
   return kOffsetCorrelation_s * square(offset_mps2(motion, sensor)) * (down_B - motion.down_B).squaredNorm();
 }
 
-void Motion::follow(const AttitudeSample& attitude, const Vector3d& f_B, double gravity_mps2, double share) {
+void Motion::follow(const AttitudeSample& attitude, double share) {
   const Vector3d now_B = attitude.q_NB.conjugate() * Vector3d::UnitZ();
   down_B += share * (now_B - down_B);
   leaning_variance_rad2 += share * ((now_B - down_B).squaredNorm() - leaning_variance_rad2);
   tilt_variance_rad2 += share * (square(attitude.tilt_sigma_rad) - tilt_variance_rad2);
-  excess_mps2 += share * (f_B.norm() - gravity_mps2 - excess_mps2);
+  excess_mps2 += share * (attitude.a_N.z() - excess_mps2);
 }
 
 double systematic_variance_m2(const SeaModel& sea, const Motion& motion, const SensorKnowledge& s) {

@@ -13,10 +13,10 @@ struct Motion {
   double tilt_variance_rad2 = 0;       // of the attitude's error
   double leaning_variance_rad2 = 0;    // of the body itself, both axes, about its mean
   Vector3d down_B = Vector3d::Zero();  // mean direction of the plumb line
-  double excess_mps2 = 0;              // mean of |f| - g: what the calibration can be seen to leave
+  double excess_mps2 = 0;              // mean vertical acceleration: what the calibration can be seen to leave
 
   // share: of this sample in the fading mean, 1 at first.
-  void follow(const AttitudeSample& attitude, const Vector3d& f_B, double gravity_mps2, double share);
+  void follow(const AttitudeSample& attitude, double share);
 };
 
 // Two-sided densities of white vertical acceleration, m^2/s^3, by which a sample is worse than the sensor's

@@ -9,10 +9,9 @@ namespace {
 constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25,
                  kBiasVariance_m2ps4 = 0.1;        // nothing known
 constexpr double kMeasurementVariance_m2 = 1e-10;  // the path is exact; this keeps the algebra regular
-constexpr double kSurprising = 9;                  // innovation squared over its variance
-constexpr double kExpected = 3;                    // what it is then taken to be
+constexpr double kSurprising = 3;                  // innovation squared over its variance, and what it is then taken to be
 constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
-constexpr double kCalmDown = 0.98;  // a node
+constexpr double kCalmDown = 0.95;  // a node
 
 Eigen::Matrix3d drift_transition(double dt) {
   Eigen::Matrix3d F;
@@ -104,11 +103,11 @@ void HeaveFilter::update() {
   // A sea that rises faster than the model is learned anew: believe the motion, and leave the drift as it is.
   const double ratio = innovation * innovation / S;
   if (ratio > kSurprising) {
-    const double more = S * (ratio / kExpected - 1);
+    const double more = S * (ratio / kSurprising - 1);
     P_(0, 0) += more;
     PH[0] += more;
     S += more;
-    surprise_ = std::min(surprise_ * std::min(ratio / kExpected, kFastestRise), kLargestSurprise);
+    surprise_ = std::min(surprise_ * std::min(ratio / kSurprising, kFastestRise), kLargestSurprise);
   } else {
     surprise_ = 1 + kCalmDown * (surprise_ - 1);
   }

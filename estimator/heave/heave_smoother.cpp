@@ -11,7 +11,7 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kBiasVariance_m2ps4 = 0.1;  // nothing known
-constexpr double kPathVariance_m2 = 1e4;
+constexpr double kPathVariance_m2 = 1e4, kSpeedVariance_m2ps2 = 1e2;
 
 // Path and speed at the nodes from rest, less the parabola of least squares: keeps the unknown drift small.
 struct Path {
@@ -113,6 +113,7 @@ std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments
   }
   for (Eigen::Index k = 0; k < nodes; ++k)
     A.at(3 * k, 3 * k) += 1 / (kPathVariance_m2 * static_cast<double>(nodes));
+  A.at(1, 1) += 1 / kSpeedVariance_m2ps2;
   A.at(2, 2) += 1 / kBiasVariance_m2ps4;
 
   if (!A.factorise()) throw std::logic_error("smooth_heave: the normal equations are not positive definite");

@@ -13,6 +13,7 @@ constexpr double kStandsOut = 6;         // times the noise: there is sea
 constexpr double kSeesNoise_hz = 0.025;  // blocks of 100 s
 constexpr double kLowestSea_hz = 0.02;   // longer waves are no wind sea nor swell
 constexpr double kLeastNoise = 0.05;     // of what was assumed
+constexpr double kMostNoise = 3;         // of what was assumed: what is more is slow motion
 constexpr double kQuiet_hz = 0.12;       // somewhere below it there is no sea
 
 }  // namespace
@@ -60,8 +61,10 @@ SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, do
   };
   const Eigen::Index resolved = bin_of(lowest_hz), quiet_end = bin_of(kQuiet_hz);
   const bool sees_noise = lowest_hz < kSeesNoise_hz;
-  const double least = kLeastNoise * assumed_noise_m2ps3;
-  const double quiet = sees_noise ? std::max(level.segment(resolved, quiet_end - resolved).minCoeff(), least)
+  const auto plausible = [&](double noise_m2ps3) {
+    return std::clamp(noise_m2ps3, kLeastNoise * assumed_noise_m2ps3, kMostNoise * assumed_noise_m2ps3);
+  };
+  const double quiet = sees_noise ? plausible(level.segment(resolved, quiet_end - resolved).minCoeff())
                                   : assumed_noise_m2ps3;
   const auto stands_out = [&](Eigen::Index i) { return level[i] > kStandsOut * quiet; };
   Eigen::Index first = std::max(bin_of(kLowestSea_hz), resolved + 1);
@@ -71,7 +74,7 @@ SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, do
   split.first_bin = std::max(first - 1, resolved);
   split.noise_m2ps3 = assumed_noise_m2ps3;
   if (sees_noise && resolved < split.first_bin)
-    split.noise_m2ps3 = std::max(raw.segment(resolved, split.first_bin - resolved).mean(), least);
+    split.noise_m2ps3 = plausible(raw.segment(resolved, split.first_bin - resolved).mean());
   split.heave_density_m2s.setZero(bins);
   for (Eigen::Index i = split.first_bin; i < bins; ++i)
     split.heave_density_m2s[i] = std::max(density[i] - split.noise_m2ps3 * noise[i], 0.0) /

@@ -48,7 +48,8 @@ struct SeaAndNoise {
 
 // q is found where there is no sea: below the lowest frequency whose power stands out. Below lowest_hz the
 // blocks resolve nothing and the sea is left at zero; where that reaches far into the frequencies of waves,
-// nothing is seen of q either, and assumed_noise is taken.
+// nothing is seen of q either, and assumed_noise is taken. A floor far above assumed_noise, the sensor's, is
+// no noise but slow motion, and stays with the sea.
 SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, double assumed_noise_m2ps3,
                                  double lowest_hz);
 

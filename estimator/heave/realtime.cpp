@@ -14,6 +14,7 @@ constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabo
 constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
 constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
+constexpr std::size_t kRepeated = 160;  // nodes
 constexpr int kOldEnough = 120;  // fine nodes of one sea before another one is believed: half a minute
 
 double square(double x) { return x * x; }
@@ -50,7 +51,7 @@ void Realtime::add(const ImuSample& sample, Output& output) {
   const double a_up = -attitude.a_N.z();
   const double share =
       std::max(1.0 / static_cast<double>(++samples_), guard_.usual_interval_s() / kMotionMemory_s);
-  motion_.follow(attitude, sample.f_B, settings_.sensor.gravity_mps2, share);
+  motion_.follow(attitude, share);
   disturbance_.add(disturbance_m2ps3(attitude, verdict.flags, settings_.sensor.gravity_mps2) +
                    turned_offset_m2ps3(attitude, motion_, settings_.sensor));
   // 2. Integrate, and at the nodes tell drift from sea.
@@ -98,6 +99,7 @@ void Realtime::fine_node(const PathIncrement& increment, Output& output) {
   if (identifier_.add(increment)) new_model_ = true;
   if (fine_nodes_ * kFineInterval_s < filter_.model().interval_s) return;
   filter_.step(interval_, disturbance_.mean());
+  if (first_.size() < kRepeated) first_.push_back({interval_, disturbance_.mean()});
   whole_.push_back(interval_);
   if (std::ssize(whole_) > filter_.order()) whole_.pop_front();
   interval_ = {};
@@ -114,7 +116,12 @@ void Realtime::take_model(Output& output) {
     finish(output);  // other nodes from now on
     whole_.clear();
   }
-  filter_.set_model(identifier_.model());
+  if (nodes_ == std::ssize(first_)) {  // still at the beginning: as if the model had been known
+    filter_ = HeaveFilter(identifier_.model());
+    for (const FirstStep& step : first_) filter_.step(step.increment, step.disturbance_m2ps3);
+  } else {
+    filter_.set_model(identifier_.model());
+  }
   new_model_ = false;
 }
 

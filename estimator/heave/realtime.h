@@ -45,6 +45,11 @@ class Realtime : public Method {
   HeaveFilter filter_;
   WaveCounter counter_;
 
+  struct FirstStep {
+    PathIncrement increment;
+    double disturbance_m2ps3;
+  };
+  std::vector<FirstStep> first_;     // steps since the start, for as long as they are gone through again
   PathIncrement interval_;           // since the filter's last node, whole fine intervals
   int fine_nodes_ = 0;               // how many
   std::deque<PathIncrement> whole_;  // the filter's newest intervals, newest last

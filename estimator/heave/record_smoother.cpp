@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabola
 constexpr int kOrder = 48;             // of the autoregression: 24 s
+constexpr int kBlock = 1024;           // fine nodes of a periodogram: 256 s
 
 double square(double x) { return x * x; }
 
@@ -55,6 +56,8 @@ Piece integrate(const Record& record, const std::vector<AttitudeSample>& attitud
 SeaModel identify(std::span<const Piece> pieces, const AttitudeSettings& attitude) {
   SeaIdentifierSettings settings;
   settings.order = kOrder;
+  settings.interval_s = 0;  // as suits the sea
+  settings.block = kBlock;
   settings.memory_s = 0;
   settings.accel_noise_m2ps3 = square(attitude.accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
   SeaIdentifier identifier(settings);
@@ -115,8 +118,7 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
   SmoothedRecord smoothed;
   smoothed.attitude = smooth_attitude(samples, settings);
   for (std::size_t i = 0; i < samples.size(); ++i)
-    smoothed.motion.follow(smoothed.attitude[i], samples[i].f_B, sensor.gravity_mps2,
-                           1.0 / static_cast<double>(i + 1));
+    smoothed.motion.follow(smoothed.attitude[i], 1.0 / static_cast<double>(i + 1));
   const auto pieces_with = [&](double interval_s) {
     std::vector<Piece> pieces;
     for (std::size_t p = 0; p < record.pieces().size(); ++p) {

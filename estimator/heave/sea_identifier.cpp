@@ -7,10 +7,12 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kDt = kFineInterval_s;
-constexpr int kShortest = 48;       // nodes before the first periodogram: 12 s
+constexpr int kFirstGuess = 6;      // nodes before the first guess
+constexpr int kShortest = 64;       // nodes before the first periodogram: 16 s
 constexpr int kFirstSteps = 16;     // nodes between the first ones
 constexpr int kKept = 16;           // of the old sea's nodes, which saw the new one begin
 constexpr double kResolved = 2.5;   // cycles a block: what a Hann window keeps apart from the mean
+constexpr double kGuessWeight = 0.01;  // of the guess, beside periodograms of a whole block
 constexpr double kLeastSea = 1e-4;  // of the unknown sea: what a calm may still become
 
 }  // namespace
@@ -18,35 +20,44 @@ constexpr double kLeastSea = 1e-4;  // of the unknown sea: what a calm may still
 SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
     : settings_(settings),
       periodogram_(settings.block),
-      until_next_(kShortest),
+      guess_(kDt, settings.block / 2 + 1, settings.accel_noise_m2ps3),
+      until_next_(kFirstGuess),
       density_(Eigen::VectorXd::Zero(settings.block / 2 + 1)),
       model_(unknown_sea(settings.interval_s > 0 ? settings.interval_s : 2 * kFineInterval_s, settings.order,
                          settings.accel_noise_m2ps3)) {
+  unknown_.setZero(density_.size());
+  for (Eigen::Index i = 1; i < unknown_.size(); ++i)
+    unknown_[i] = unknown_sea_density_m2s(static_cast<double>(i) / (kDt * settings.block));
   newest_.reserve(static_cast<std::size_t>(2 * settings.block));
 }
 
 void SeaIdentifier::gap() {
   has_last_ = false;
   newest_.clear();
+  guess_.restart();
 }
 
 void SeaIdentifier::forget() {
   if (std::ssize(newest_) > kKept) newest_.erase(newest_.begin(), newest_.end() - kKept);
+  guesses_ = false;
   weight_ = 0;
   age_ = 0;
   until_next_ = kShortest - kKept;
 }
 
 bool SeaIdentifier::add(const PathIncrement& increment) {
-  if (has_last_) newest_.push_back(second_difference_m(last_, increment, kDt));
+  if (has_last_) {
+    newest_.push_back(second_difference_m(last_, increment, kDt));
+    if (guesses_) guess_.add(newest_.back());
+  }
   last_ = increment;
   has_last_ = true;
   ++age_;
-  if (--until_next_ > 0 || std::ssize(newest_) < kShortest) return false;
+  if (--until_next_ > 0 || std::ssize(newest_) < (guesses_ ? kFirstGuess : kShortest)) return false;
   const auto block = static_cast<std::ptrdiff_t>(settings_.block);
   if (std::ssize(newest_) > block) newest_.erase(newest_.begin(), newest_.end() - block);
   until_next_ = std::clamp(static_cast<int>(newest_.size()) / 4, kFirstSteps, settings_.every);
-  periodogram();
+  if (std::ssize(newest_) >= kShortest) periodogram();
   identify();
   return true;
 }
@@ -61,28 +72,28 @@ void SeaIdentifier::periodogram() {
 
 void SeaIdentifier::identify() {
   const double df = 1 / (kDt * settings_.block);
-  const double lowest_hz = kResolved / (kDt * static_cast<double>(newest_.size()));
-  SeaAndNoise split = split_sea_from_noise(density_, kDt, model_.accel_noise_m2ps3, lowest_hz);
-  // What is too slow to be resolved yet is taken for the slow part of an unknown sea, in proportion to the
-  // rest.
+  SeaAndNoise split{guesses_ ? guess_.density_m2s() : unknown_, settings_.accel_noise_m2ps3, 1};
   Eigen::VectorXd& sea = split.heave_density_m2s;
-  double seen = 0, expected = 0;
-  const auto slow = static_cast<Eigen::Index>(lowest_hz / df);
-  for (Eigen::Index i = slow + 1; i < sea.size(); ++i) {
-    seen += sea[i];
-    expected += unknown_sea_density_m2s(df * static_cast<double>(i));
+  if (weight_ > 0) {
+    const double lowest_hz = kResolved / (kDt * static_cast<double>(newest_.size()));
+    const Eigen::VectorXd guess = sea;
+    split = split_sea_from_noise(density_, kDt, settings_.accel_noise_m2ps3, lowest_hz);
+    // What is too slow to be resolved yet is as guessed, in proportion to the rest.
+    const auto slow = static_cast<Eigen::Index>(lowest_hz / df) + 1, fast = sea.size() - slow;
+    const double size = sea.tail(fast).sum() / guess.tail(fast).sum();
+    sea.head(slow) = size * guess.head(slow);
+    const double share = guesses_ ? kGuessWeight / (kGuessWeight + weight_) : 0;
+    sea += share * (size * guess - sea);
   }
-  for (Eigen::Index i = 1; i <= slow; ++i)
-    sea[i] = seen / expected * unknown_sea_density_m2s(df * static_cast<double>(i));
-  const double noise_m2ps3 = split.noise_m2ps3;
-  const double interval_s = settings_.interval_s > 0 ? settings_.interval_s : suited_interval_s(sea, df);
+  const double interval_s =
+      settings_.interval_s > 0 ? settings_.interval_s : suited_interval_s(sea, df, model_.interval_s);
   model_ = model_of_density(sea, df, interval_s, settings_.order);
   if (model_.heave_variance_m2() < kLeastSea * kUnknownSea_m2) {  // calm: whatever comes, comes from anywhere
-    model_ = unknown_sea(model_.interval_s, settings_.order, noise_m2ps3);
+    model_ = unknown_sea(model_.interval_s, settings_.order, split.noise_m2ps3);
     model_.autocovariance_m2 *= kLeastSea;
     model_.innovation_m2 *= kLeastSea;
   }
-  model_.set_noise(noise_m2ps3);
+  model_.set_noise(split.noise_m2ps3);
 }
 
 }  // namespace waverig::estimator

@@ -6,16 +6,17 @@
 
 #include "estimator/heave/node_spectrum.h"
 #include "estimator/heave/path_integrator.h"
+#include "estimator/heave/sea_guess.h"
 #include "estimator/heave/sea_model.h"
 
 namespace waverig::estimator {
 
 struct SeaIdentifierSettings {
-  int order = 32;                   // of the autoregression
-  double interval_s = 0;            // between the model's nodes; 0: as suits the sea
-  int block = 1024;                 // fine nodes of a periodogram: 256 s
+  int order = 96;                   // of the autoregression
+  double interval_s = 0.25;            // between the model's nodes; 0: as suits the sea
+  int block = 512;                  // fine nodes of a periodogram: 128 s
   int every = 64;                   // fine nodes from one periodogram to the next; sooner at first
-  double memory_s = 900;            // of the density; 0: never forgets
+  double memory_s = 300;            // of the density; 0: never forgets
   double accel_noise_m2ps3 = 6e-6;  // two-sided density assumed until it is seen; data sheet
 };
 
@@ -36,6 +37,9 @@ class SeaIdentifier {
 
   SeaIdentifierSettings settings_;
   Periodogram periodogram_;
+  SeaGuess guess_;
+  bool guesses_ = true;  // from the record's start: whatever comes upon a sea is no sea of a known shape
+  Eigen::VectorXd unknown_;  // density of the unknown sea
   std::vector<double> newest_;  // second differences, oldest first
   int until_next_ = 0, age_ = 0;
   PathIncrement last_;

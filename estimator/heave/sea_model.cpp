@@ -1,5 +1,6 @@
 #include "estimator/heave/sea_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -8,8 +9,9 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kRidge = 1e-6;             // of the variance: white, so that no frequency is ruled out
-constexpr double kBiasCorner_radps = 0.02;  // below it the bias walk outweighs the noise
-constexpr double kFastPeriod_s = 3.5;       // of a sea that needs the fine nodes
+constexpr double kBiasCorner_radps = 0.01;  // below it the bias walk outweighs the noise
+constexpr double kFast_hz = 0.5;            // half of what nodes half a second apart can tell
+constexpr double kFastShare = 0.02;         // of the sea's variance above it: needs the fine nodes
 constexpr double kUnknownPeak_hz = 1.0 / 14;
 
 }  // namespace
@@ -79,13 +81,11 @@ SeaModel unknown_sea(double interval_s, int order, double accel_noise_m2ps3) {
   return model;
 }
 
-double suited_interval_s(const Eigen::VectorXd& density, double df_hz) {
-  double m0 = 0, m2 = 0;
-  for (Eigen::Index i = 1; i < density.size(); ++i) {
-    m0 += density[i];
-    m2 += density[i] * std::pow(df_hz * static_cast<double>(i), 2);
-  }
-  return m2 * kFastPeriod_s * kFastPeriod_s > m0 ? kFineInterval_s : 2 * kFineInterval_s;
+double suited_interval_s(const Eigen::VectorXd& density, double df_hz, double present_s) {
+  const auto fast = std::min<Eigen::Index>(std::lround(kFast_hz / df_hz), density.size());
+  const double share = density.tail(density.size() - fast).sum() / density.sum();
+  const double enough = present_s > kFineInterval_s ? kFastShare : kFastShare / 2;  // no change to and fro
+  return share > enough ? kFineInterval_s : 2 * kFineInterval_s;
 }
 
 }  // namespace waverig::estimator

@@ -38,9 +38,9 @@ Predictors levinson(const Eigen::VectorXd& autocovariance);
 // df_hz).
 SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double interval_s, int order);
 
-// A tenth of the sea's mean period, or the step next to it that there is: the order then reaches over some
-// three periods.
-double suited_interval_s(const Eigen::VectorXd& density, double df_hz);
+// The fine interval for a sea with much above half a hertz, twice as wide for all others: the order then
+// reaches over some three periods. present_s: of the model that stands, which is kept in doubt.
+double suited_interval_s(const Eigen::VectorXd& density, double df_hz, double present_s);
 
 // Before anything is known: a fully grown sea (Pierson-Moskowitz) with waves of up to 14 s, and of Hs 2 m.
 inline constexpr double kUnknownSea_m2 = 0.25;  // its variance

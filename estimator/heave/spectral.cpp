@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "estimator/heave/node_spectrum.h"
@@ -15,6 +16,8 @@ constexpr double kSpectrumInterval_s = 0.125;
 constexpr int kLongestBlock = 2048;  // 256 s
 constexpr int kShortestBlock = 64;   // 8 s
 constexpr int kOverlap = 4;          // blocks begin every quarter of their length
+constexpr int kPadding = 4;          // of a block, for the peak between its frequencies
+constexpr double kFewWaves = 20;
 
 double square(double x) { return x * x; }
 
@@ -54,13 +57,14 @@ std::vector<Nodes> nodes_of(const Record& record, const SmoothedRecord& smoothed
 // whole record as multiples of those under the windows.
 struct BlockAverage {
   Eigen::VectorXd density;
+  Eigen::VectorXd fine_density;  // the same at kPadding times as many frequencies
   int blocks = 0;
   double heave_ratio = 1, rate_ratio = 1, mean_square_heave_m2 = 0;
 };
 
 BlockAverage average_blocks(const std::vector<Nodes>& pieces, int block, double interval_s) {
-  BlockAverage average{Eigen::VectorXd::Zero(block / 2 + 1)};
-  Periodogram periodogram(block);
+  BlockAverage average{Eigen::VectorXd::Zero(block / 2 + 1), Eigen::VectorXd::Zero(kPadding * block / 2 + 1)};
+  Periodogram periodogram(block), fine_periodogram(kPadding * block);
   const auto length = static_cast<std::size_t>(block);
   double all = 0, all_z = 0, all_v = 0, windowed = 0, windowed_z = 0, windowed_v = 0;
   for (const Nodes& nodes : pieces) {
@@ -73,8 +77,9 @@ BlockAverage average_blocks(const std::vector<Nodes>& pieces, int block, double 
     const std::size_t count = 1 + (n - length + length / kOverlap - 1) / (length / kOverlap);
     for (std::size_t b = 0; b < count; ++b) {
       const std::size_t first = count > 1 ? b * (n - length) / (count - 1) : 0;
-      average.density +=
-          periodogram.of(std::span(nodes.second_difference_m).subspan(first, length), interval_s);
+      const auto values = std::span(nodes.second_difference_m).subspan(first, length);
+      average.density += periodogram.of(values, interval_s);
+      average.fine_density += fine_periodogram.of(values, interval_s);
       ++average.blocks;
       for (std::size_t i = 0; i < length; ++i) {
         const double weight = square(Periodogram::window(i, length));
@@ -86,6 +91,7 @@ BlockAverage average_blocks(const std::vector<Nodes>& pieces, int block, double 
   }
   if (average.blocks == 0) return average;
   average.density /= average.blocks;
+  average.fine_density /= average.blocks;
   average.mean_square_heave_m2 = all_z / all;
   if (windowed_z > 0) average.heave_ratio = all_z / all / (windowed_z / windowed);
   if (windowed_v > 0) average.rate_ratio = all_v / all / (windowed_v / windowed);
@@ -107,14 +113,26 @@ double smearing(int n, double f_hz, double block_s) {
   return (n - 4) * (n - 5) / (6 * square(block_s * f_hz));
 }
 
-void set_moments(const SeaAndNoise& split, double block_s, const BlockAverage& average, SeaState& sea) {
-  double m[4] = {}, peak = 0, peak_f = 0;  // m_-1, m_0, m_1, m_2
+// The centroid of Z^4 (Young 1995), from the sea's lowest frequency on.
+double peak_period_s(const Eigen::VectorXd& fine_density, Eigen::Index first, double interval_s) {
+  const double step = std::numbers::pi / static_cast<double>(fine_density.size() - 1);
+  double peak = 0, peak_w = 0;
+  for (Eigen::Index i = first; i < fine_density.size(); ++i) {
+    const double w = step * static_cast<double>(i), z = fine_density[i] / square(2 - 2 * std::cos(w));
+    peak += std::pow(z, 4);
+    peak_w += std::pow(z, 4) * w;
+  }
+  return 2 * std::numbers::pi * interval_s * peak / peak_w;
+}
+
+void set_moments(const SeaAndNoise& split, double interval_s, int block, const BlockAverage& average,
+                 SeaState& sea) {
+  const double block_s = interval_s * block;
+  double m[4] = {};  // m_-1, m_0, m_1, m_2
   for (Eigen::Index i = split.first_bin; i < split.heave_density_m2s.size(); ++i) {
     const double f = static_cast<double>(i) / block_s, z = 2 / block_s * split.heave_density_m2s[i];
     for (int n = -1; n <= 2; ++n)
       m[n + 1] += z * std::pow(f, n) * (1 - std::min(smearing(n, f, block_s), 1.0));
-    peak += std::pow(z, 4);
-    peak_f += std::pow(z, 4) * f;
   }
   if (!(m[1] > 0)) return;
   // Heave's ratio goes with f^0 and its rate's with f^2; the others lie on the same power of frequency.
@@ -124,7 +142,7 @@ void set_moments(const SeaAndNoise& split, double block_s, const BlockAverage& a
   sea.tm_10_s = m[0] / m[1];
   sea.tm01_s = m[1] / m[2];
   sea.tm02_s = std::sqrt(m[1] / m[3]);
-  sea.tp_s = peak / peak_f;
+  sea.tp_s = peak_period_s(average.fine_density, kPadding * split.first_bin, interval_s);
 }
 
 // Mean of the highest n-th part of the waves, the last of them with the fraction that is left.
@@ -170,12 +188,13 @@ SeaState sea_state(const Record& record, const SmoothedRecord& smoothed, const S
   const std::vector<Nodes> pieces = nodes_of(record, smoothed, interval_s);
   const int block = block_length(pieces);
   const BlockAverage average = average_blocks(pieces, block, interval_s);
-  if (average.blocks < 3) sea.flags |= flag::kTooFewWaves;
+  sea.flags = flag::kTooFewWaves;
   if (average.blocks == 0) return sea;
   const double nominal =
       square(attitude_settings(sensor).accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
   set_moments(split_sea_from_noise(average.density, interval_s, nominal, 2.5 / (interval_s * block)),
-              interval_s * block, average, sea);
+              interval_s, block, average, sea);
+  if (sea.duration_s > kFewWaves * sea.tm02_s) sea.flags = 0;
   sea.hm0_sigma_m = hm0_sigma(smoothed, sensor, sea);
   return sea;
 }

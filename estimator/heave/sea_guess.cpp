@@ -1,0 +1,95 @@
+#include "estimator/heave/sea_guess.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace waverig::estimator {
+namespace {
+
+constexpr int kOrder = 24;
+constexpr int kPeriods = 10;
+constexpr double kShortest_s = 2, kRatio = 1.26;  // of the peak periods
+constexpr double kSteepness_s2m = 0.03;           // Hm0 = kSteepness Tp^2, a usual sea
+constexpr double kCut = 5;                        // end of a short tail, peak frequencies
+constexpr double kRidge = 1e-6;                   // of the variance, white
+constexpr double kPriorValues = 4;                // as many values say that the size is a usual one
+
+// S(f) ~ f^-5 exp(-5/4 (fp/f)^4), whose integral is 1 / (5 fp^4). Two-sided.
+double pierson_moskowitz(double variance_m2, double peak_hz, double f_hz) {
+  const double x4 = std::pow(peak_hz / f_hz, 4);
+  return variance_m2 / 2 * 5 * x4 / f_hz * std::exp(-1.25 * x4);
+}
+
+}  // namespace
+
+SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3)
+    : newest_(Eigen::VectorXd::Zero(kOrder)) {
+  const double step = std::numbers::pi / static_cast<double>(bins - 1);
+  const double df_hz = step / (2 * std::numbers::pi * dt_s);
+  for (int p = 0; p < kPeriods; ++p)
+    for (const bool cut : {false, true}) {
+      const double tp_s = kShortest_s * std::pow(kRatio, p), hm0_m = kSteepness_s2m * tp_s * tp_s;
+      Candidate c{Eigen::VectorXd::Zero(bins), {}};
+      Eigen::VectorXd r = Eigen::VectorXd::Zero(kOrder + 1);
+      for (Eigen::Index i = 1; i < bins; ++i) {
+        const double f = df_hz * static_cast<double>(i), w = step * static_cast<double>(i);
+        if (!cut || f * tp_s < kCut) c.density_m2s[i] = pierson_moskowitz(hm0_m * hm0_m / 16, 1 / tp_s, f);
+        const double turned = 2 - 2 * std::cos(w);
+        const double seen = turned * turned * c.density_m2s[i] +
+                            accel_noise_m2ps3 * std::pow(dt_s, 4) * (2 + std::cos(w)) / 3;
+        c.variance_m2 += 2 * df_hz * seen;
+        for (int j = 0; j <= kOrder; ++j) r[j] += 2 * df_hz * turned * seen * std::cos(j * w);
+      }
+      r[0] *= 1 + kRidge;
+      c.predictors = levinson(r);
+      candidates_.push_back(std::move(c));
+    }
+  restart();
+}
+
+void SeaGuess::restart() {
+  for (Candidate& c : candidates_) c.errors = c.log_variances = 0;
+  seen_ = -1;
+  mean_m_ = squares_m2_ = 0;
+}
+
+void SeaGuess::add(double second_difference_m) {
+  const double value = second_difference_m - last_m_;
+  last_m_ = second_difference_m;
+  ++seen_;
+  const double off_m = second_difference_m - mean_m_;  // Welford 1962
+  mean_m_ += off_m / (seen_ + 1);
+  squares_m2_ += off_m * (second_difference_m - mean_m_);
+  if (seen_ == 0) return;
+  const auto m = static_cast<std::size_t>(std::min(seen_ - 1, kOrder));
+  for (Candidate& c : candidates_) {
+    const Eigen::VectorXd& a = c.predictors.coefficients[m];
+    const double error = value - a.dot(newest_.head(a.size()));
+    c.errors += error * error / c.predictors.variance[m];
+    c.log_variances += std::log(c.predictors.variance[m]);
+  }
+  for (Eigen::Index i = kOrder - 1; i > 0; --i) newest_[i] = newest_[i - 1];
+  newest_[0] = value;
+}
+
+Eigen::VectorXd SeaGuess::density_m2s() const {
+  const double n = std::max(seen_, 0) + kPriorValues;
+  const auto size = [&](const Candidate& c) { return (c.errors + kPriorValues) / n; };
+  const auto log_likelihood = [&](const Candidate& c) {
+    return -0.5 * (n * std::log(size(c)) + c.log_variances);
+  };
+  double best = -std::numeric_limits<double>::infinity(), sum = 0;
+  for (const Candidate& c : candidates_) best = std::max(best, log_likelihood(c));
+  Eigen::VectorXd density = Eigen::VectorXd::Zero(candidates_.front().density_m2s.size());
+  for (const Candidate& c : candidates_) {
+    const double likelihood = std::exp(log_likelihood(c) - best);
+    const double by_variance = (squares_m2_ / c.variance_m2 + kPriorValues) / n;
+    density += likelihood * std::max(size(c), by_variance) * c.density_m2s;
+    sum += likelihood;
+  }
+  return density / sum;
+}
+
+}  // namespace waverig::estimator
