@@ -13,7 +13,7 @@ struct Motion {
   double tilt_variance_rad2 = 0;       // of the attitude's error
   double leaning_variance_rad2 = 0;    // of the body itself, both axes, about its mean
   Vector3d down_B = Vector3d::Zero();  // mean direction of the plumb line
-  double excess_mps2 = 0;              // mean vertical acceleration: what the calibration can be seen to leave
+  double excess_mps2 = 0;  // mean vertical acceleration: what the calibration can be seen to leave
 
   // share: of this sample in the fading mean, 1 at first.
   void follow(const AttitudeSample& attitude, double share);

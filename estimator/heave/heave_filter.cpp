@@ -9,9 +9,10 @@ namespace {
 constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25,
                  kBiasVariance_m2ps4 = 0.1;        // nothing known
 constexpr double kMeasurementVariance_m2 = 1e-10;  // the path is exact; this keeps the algebra regular
-constexpr double kSurprising = 3;                  // innovation squared over its variance, and what it is then taken to be
+constexpr double kSurprising = 3;  // innovation squared over its variance, and what it is then taken to be
 constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
-constexpr double kCalmDown = 0.95;  // a node
+constexpr double kCalmDown = 0.95;    // a node
+constexpr double kRoughShare = 0.05;  // of a node in the mean that tells another sea
 
 Eigen::Matrix3d drift_transition(double dt) {
   Eigen::Matrix3d F;
@@ -33,7 +34,7 @@ void HeaveFilter::set_model(const SeaModel& model) {
   } else {
     model_ = model;
   }
-  surprise_ = 1;
+  surprise_ = roughness_ = 1;
 }
 
 // No heave is known at these nodes yet: its prior is the sea's own.
@@ -102,6 +103,7 @@ void HeaveFilter::update() {
   double S = PH[0] + PH[n] + kMeasurementVariance_m2;
   // A sea that rises faster than the model is learned anew: believe the motion, and leave the drift as it is.
   const double ratio = innovation * innovation / S;
+  roughness_ += kRoughShare * (ratio * surprise_ - roughness_);
   if (ratio > kSurprising) {
     const double more = S * (ratio / kSurprising - 1);
     P_(0, 0) += more;

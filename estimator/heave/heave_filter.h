@@ -37,7 +37,7 @@ class HeaveFilter {
   // Heave at the node `lag` intervals ago, by all measurements since. lag < order.
   double lagged_heave_m(int lag) const { return z_[lag]; }
   double lagged_variance_m2(int lag) const { return P_(lag, lag); }
-  bool surprised() const { return surprise_ > 10; }  // the model has become too small for the motion
+  bool surprised() const { return roughness_ > kTooRough; }  // the model has become too small for the motion
   const SeaModel& model() const { return model_; }
   int order() const { return model_.order(); }
   double bias_mps2() const { return bias_mps2_; }
@@ -51,7 +51,9 @@ class HeaveFilter {
   Eigen::VectorXd z_;  // heaves, newest first
   double path_m_ = 0, speed_mps_ = 0, bias_mps2_ = 0;
   Eigen::MatrixXd P_, next_P_;
-  double surprise_ = 1;  // how many times the model's innovation variance the sea is found to have just now
+  static constexpr double kTooRough = 5;
+  double roughness_ = 1;  // mean of the last innovations squared over the model's variance of them
+  double surprise_ = 1;   // how many times the model's innovation variance the sea is found to have just now
 };
 
 }  // namespace waverig::estimator

@@ -13,6 +13,7 @@ constexpr double kStandsOut = 6;         // times the noise: there is sea
 constexpr double kSeesNoise_hz = 0.025;  // blocks of 100 s
 constexpr double kLowestSea_hz = 0.02;   // longer waves are no wind sea nor swell
 constexpr double kLeastNoise = 0.05;     // of what was assumed
+constexpr double kLeastQuiet = 0.7;      // of what was assumed, to tell sea from
 constexpr double kMostNoise = 3;         // of what was assumed: what is more is slow motion
 constexpr double kQuiet_hz = 0.12;       // somewhere below it there is no sea
 
@@ -64,8 +65,10 @@ SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, do
   const auto plausible = [&](double noise_m2ps3) {
     return std::clamp(noise_m2ps3, kLeastNoise * assumed_noise_m2ps3, kMostNoise * assumed_noise_m2ps3);
   };
-  const double quiet = sees_noise ? plausible(level.segment(resolved, quiet_end - resolved).minCoeff())
-                                  : assumed_noise_m2ps3;
+  // The least of some levels is less than the noise, by chance: no reason to see a sea in the others.
+  const double least = level.segment(resolved, quiet_end - resolved).minCoeff();
+  const double quiet =
+      sees_noise ? std::max(plausible(least), kLeastQuiet * assumed_noise_m2ps3) : assumed_noise_m2ps3;
   const auto stands_out = [&](Eigen::Index i) { return level[i] > kStandsOut * quiet; };
   Eigen::Index first = std::max(bin_of(kLowestSea_hz), resolved + 1);
   while (first < bins - 1 && !(stands_out(first) && stands_out(first + 1))) ++first;

@@ -15,7 +15,7 @@ constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
 constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
 constexpr std::size_t kRepeated = 160;  // nodes
-constexpr int kOldEnough = 120;  // fine nodes of one sea before another one is believed: half a minute
+constexpr int kOldEnough = 120;         // fine nodes of one sea before another one is believed: half a minute
 
 double square(double x) { return x * x; }
 

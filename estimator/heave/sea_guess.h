@@ -34,7 +34,7 @@ class SeaGuess {
     double log_variances = 0;  // sum
   };
   std::vector<Candidate> candidates_;
-  Eigen::VectorXd newest_;  // differences of second differences, newest first
+  Eigen::VectorXd newest_;                           // differences of second differences, newest first
   double last_m_ = 0, mean_m_ = 0, squares_m2_ = 0;  // second differences: last, mean, squares about it
   int seen_ = 0;
 };

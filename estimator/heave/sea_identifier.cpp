@@ -7,13 +7,13 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kDt = kFineInterval_s;
-constexpr int kFirstGuess = 6;      // nodes before the first guess
-constexpr int kShortest = 64;       // nodes before the first periodogram: 16 s
-constexpr int kFirstSteps = 16;     // nodes between the first ones
-constexpr int kKept = 16;           // of the old sea's nodes, which saw the new one begin
-constexpr double kResolved = 2.5;   // cycles a block: what a Hann window keeps apart from the mean
+constexpr int kFirstGuess = 6;         // nodes before the first guess
+constexpr int kShortest = 56;          // nodes before the first periodogram: 14 s
+constexpr int kFirstSteps = 16;        // nodes between the first ones
+constexpr int kKept = 16;              // of the old sea's nodes, which saw the new one begin
+constexpr double kResolved = 2.5;      // cycles a block: what a Hann window keeps apart from the mean
 constexpr double kGuessWeight = 0.01;  // of the guess, beside periodograms of a whole block
-constexpr double kLeastSea = 1e-4;  // of the unknown sea: what a calm may still become
+constexpr double kLeastSea = 1e-4;     // of the unknown sea: what a calm may still become
 
 }  // namespace
 

@@ -13,7 +13,7 @@ namespace waverig::estimator {
 
 struct SeaIdentifierSettings {
   int order = 96;                   // of the autoregression
-  double interval_s = 0.25;            // between the model's nodes; 0: as suits the sea
+  double interval_s = 0.25;         // between the model's nodes; 0: as suits the sea
   int block = 512;                  // fine nodes of a periodogram: 128 s
   int every = 64;                   // fine nodes from one periodogram to the next; sooner at first
   double memory_s = 300;            // of the density; 0: never forgets
@@ -38,7 +38,7 @@ class SeaIdentifier {
   SeaIdentifierSettings settings_;
   Periodogram periodogram_;
   SeaGuess guess_;
-  bool guesses_ = true;  // from the record's start: whatever comes upon a sea is no sea of a known shape
+  bool guesses_ = true;      // from the record's start: whatever comes upon a sea is no sea of a known shape
   Eigen::VectorXd unknown_;  // density of the unknown sea
   std::vector<double> newest_;  // second differences, oldest first
   int until_next_ = 0, age_ = 0;

@@ -14,8 +14,8 @@
 namespace waverig::estimator {
 
 // Sea state of a smoothed record; hm0_sigma_m is the uncertainty against the record's own sea (noise,
-// attitude, calibration), not that of the record as a sample of a longer sea. Flags: kTooFewWaves under twenty
-// mean periods.
+// attitude, calibration), not that of the record as a sample of a longer sea. Flags: kTooFewWaves under
+// twenty mean periods.
 SeaState sea_state(const Record& record, const SmoothedRecord& smoothed, const SensorKnowledge& sensor);
 
 class Spectral : public Method {

@@ -61,8 +61,8 @@ TEST(RealData, HandMovedBoardComesOutAsTheCamerasSawIt) {
   WAVERIG_NEEDS_RECORDING(imu);
   const auto samples = read_samples(imu);
   const auto truth = evaluation::read_heave_csv(seen);
-  EXPECT_LT(moving_rms("smoothed", samples, truth), 0.009);
-  EXPECT_LT(moving_rms("realtime", samples, truth), 0.04);
+  EXPECT_LT(moving_rms("smoothed", samples, truth), 0.008);
+  EXPECT_LT(moving_rms("realtime", samples, truth), 0.035);
 }
 
 TEST(RealData, ARotationRecordingCalibratesIt) {
@@ -73,8 +73,8 @@ TEST(RealData, ARotationRecordingCalibratesIt) {
   auto samples = read_samples(imu);
   for (auto& sample : samples) sample.f_B = correct(sample.f_B);
   const auto truth = evaluation::read_heave_csv(recordings() / "broad10_translation.truth.csv.gz");
-  EXPECT_LT(moving_rms("smoothed", samples, truth), 0.009);
-  EXPECT_LT(moving_rms("realtime", samples, truth), 0.04);
+  EXPECT_LT(moving_rms("smoothed", samples, truth), 0.008);
+  EXPECT_LT(moving_rms("realtime", samples, truth), 0.035);
 }
 
 }  // namespace
