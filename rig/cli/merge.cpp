@@ -7,11 +7,16 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/results_io.h"
+#include "render/report/report.h"
 #include "rig/campaign/plan.h"
+#include "rig/campaign/sweep.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/draw.h"
 
 namespace waverig::cli {
 namespace {
@@ -30,7 +35,12 @@ int merge(const MergeArguments& arguments) {
   for (const rig::RunPlan& run : rig::plan_campaign(campaign.settings).runs)
     expected_runs.push_back(run.name);
   const auto results = evaluation::merge_into(arguments.out, shards, command, expected_runs);
-  fmt::print("{}", evaluation::results_csv(results.cells));
+  const std::filesystem::path out = arguments.out;
+  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  draw_campaign(results, out, rig::calibrate(campaign.settings).unit, jobs);
+  evaluation::write_atomically(out / "report.html", render::report_html(results, out));
+  fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover),
+             arguments.out, (out / "report.html").string());
   return 0;
 }
 
@@ -38,7 +48,7 @@ int merge(const MergeArguments& arguments) {
 
 void add_merge(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<MergeArguments>();
-  CLI::App* command = app.add_subcommand("merge", "Join the shards of one campaign");
+  CLI::App* command = app.add_subcommand("merge", "Join the shards of one campaign, and draw and report them");
   command->add_option("shards", arguments->shards, "Results directories of waverig sweep --shard K/N")
       ->required();
   command->add_option("--out", arguments->out, "Results directory, made anew")->required();
