@@ -48,7 +48,7 @@ class Planner {
   FigurePlan run() {
     const float width = static_cast<float>(plan_.width_px) - 2 * kEdge * plan_.pt;
     plan_.title_lines = wrapped(figure_.title, width, 3, fonts_, kTitleText * plan_.text_pt, true);
-    plan_.subtitle_lines = wrapped(figure_.subtitle, width, 3, fonts_, kSubtitleText * plan_.text_pt);
+    plan_.subtitle_lines = wrapped(figure_.subtitle, width, 4, fonts_, kSubtitleText * plan_.text_pt);
     for (PanelPlan& p : plan_.panels) p.margins = {30 * plan_.pt, 4 * plan_.pt, 12 * plan_.pt, 26 * plan_.pt};
     // Margins depend on tick labels, those on the room the margins leave: three
     // rounds settle it.

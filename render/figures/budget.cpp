@@ -20,6 +20,7 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
                     "from repeats, B: from knowledge beforehand",
                 .columns = 1};
   std::size_t rows = 0;
+  double longest_mm = 0;  // one scale for all methods
   // The settings that span the campaign: at most four, or the bars become
   // hairs.
   std::vector<Setting> shown;
@@ -66,6 +67,7 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
                                 panel.y.categories.begin());
         bars.at.push_back(at + 0.4 - (static_cast<double>(i) + 0.5) * step);
         bars.value.push_back(1000 * sigma_m);
+        longest_mm = std::max(longest_mm, bars.value.back());
       };
       double square = 0;
       for (const evaluation::Contribution& part : c->statistics.budget) {
@@ -80,6 +82,11 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
     figure.row_heights.push_back(static_cast<double>(names.size()));
     figure.panels.push_back(std::move(panel));
   }
+  for (Panel& panel : figure.panels) {
+    panel.x.low = 0;
+    panel.x.high = 1.05 * longest_mm;
+  }
+  figure.share_x = true;
   figure.height_mm = std::clamp(
       30 + 24 * static_cast<double>(figure.panels.size()) + 6.5 * static_cast<double>(rows), 60.0, 240.0);
   return figure;

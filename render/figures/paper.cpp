@@ -39,27 +39,64 @@ void shade_ramps(const evaluation::RunRecord& run, double end_s, Panel& panel, b
   panel.marks.emplace_back(Span{.from = since_start_s(run, run.steady_end_utime), .to = end_s});
 }
 
-// A constant error of the acceleration makes a parabola of the trace: without
-// it the wave shows. Outside the steady part the trace is left out.
-std::vector<double> less_parabola(const Line& line, double begin_s, double end_s) {
+// A constant error of the acceleration makes a parabola of the trace.
+struct Parabola {
+  double middle_s, half_s;
+  Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();
+  Eigen::Vector3d row(double t) const {
+    const double x = (t - middle_s) / half_s;
+    return {1, x, x * x};
+  }
+  double at(double t) const { return row(t).dot(coefficients); }
+  double acceleration_mps2() const { return 2 * coefficients.z() / (half_s * half_s); }
+};
+
+// The best within [begin_s, end_s).
+Parabola parabola_of(const Line& line, double begin_s, double end_s) {
+  Parabola parabola{0.5 * (begin_s + end_s), std::max(1e-9, 0.5 * (end_s - begin_s))};
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  const double middle = 0.5 * (begin_s + end_s), half = std::max(1e-9, 0.5 * (end_s - begin_s));
-  const auto row = [&](double t) {
-    return Eigen::Vector3d(1, (t - middle) / half, (t - middle) * (t - middle) / (half * half));
-  };
   for (std::size_t i = 0; i < line.x.size(); ++i) {
     if (line.x[i] < begin_s || line.x[i] >= end_s || !std::isfinite(line.y[i])) continue;
-    const Eigen::Vector3d r = row(line.x[i]);
+    const Eigen::Vector3d r = parabola.row(line.x[i]);
     normal += r * r.transpose();
     right += r * line.y[i];
   }
-  const Eigen::Vector3d parabola = normal.ldlt().solve(right);
+  parabola.coefficients = normal.ldlt().solve(right);
+  return parabola;
+}
+
+// Without it the wave shows. Outside the steady part the trace is left out.
+std::vector<double> less_parabola(const Line& line, double begin_s, double end_s) {
+  const Parabola parabola = parabola_of(line, begin_s, end_s);
   std::vector<double> rest(line.x.size(), kAuto);
   for (std::size_t i = 0; i < line.x.size(); ++i) {
-    if (line.x[i] >= begin_s && line.x[i] < end_s) rest[i] = line.y[i] - row(line.x[i]).dot(parabola);
+    if (line.x[i] >= begin_s && line.x[i] < end_s) rest[i] = line.y[i] - parabola.at(line.x[i]);
   }
   return rest;
+}
+
+Line uncorrected_line(const evaluation::RunRecord& run, const PaperTraces& traces) {
+  Line line{.name = "levelled acceleration, integrated twice", .look = {.color = 0}};
+  for (const estimator::HeaveSample& sample : traces.heave) {
+    line.x.push_back(since_start_s(run, sample.utime));
+    line.y.push_back(sample.heave_m);
+  }
+  return line;
+}
+
+// Eq (11) fits alpha cos + beta t + gamma to a wave. What it finds in the parabola b t^2 / 2 of a bias alone:
+// alpha = b T^2 / (2 pi^2), a height of b T^2 / pi^2.
+std::string bias_text(const evaluation::RunRecord& run, const PaperTraces& traces) {
+  const double bias_mps2 =
+      parabola_of(uncorrected_line(run, traces), since_start_s(run, run.steady_begin_utime),
+                  since_start_s(run, run.steady_end_utime))
+          .acceleration_mps2();
+  const double height_m = bias_mps2 * run.period_s * run.period_s / (std::numbers::pi * std::numbers::pi);
+  return fmt::format(
+      "\nacceleration off by b = {:.3f} m/s\u00B2, which alone adds b T\u00B2/\u03C0\u00B2 = "
+      "{:.0f} cm to a height",
+      bias_mps2, height_m / kCentimetre);
 }
 
 }  // namespace
@@ -113,11 +150,7 @@ Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTra
                 .subtitle = setting_text(run) + "; " + traces.method + ", " + calibration_text(calibrated),
                 .share_x = true,
                 .height_mm = 120};
-  Line line{.name = "levelled acceleration, integrated twice", .look = {.color = 0}};
-  for (const estimator::HeaveSample& sample : traces.heave) {
-    line.x.push_back(since_start_s(run, sample.utime));
-    line.y.push_back(sample.heave_m);
-  }
+  Line line = uncorrected_line(run, traces);
   Line truth{.name = "true heave", .look = {.color = 1, .width_pt = 0.8}};
   for (const evaluation::TruthSample& sample : run.truth) {
     truth.x.push_back(since_start_s(run, sample.utime));
@@ -185,6 +218,7 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
         "%, standard deviation {:.2f} cm",
         published.mean_height_m / kCentimetre, published.error_rate_percent, published.std_m / kCentimetre);
   }
+  if (!calibrated && !traces.heave.empty()) statistics += bias_text(run, traces);
   Figure figure{.title = calibrated ? "Trace and wave heights with the accelerometer calibrated"
                                     : "Trace and wave heights without accelerometer calibration",
                 .subtitle = setting_text(run) + "\n" + traces.method + ": " + statistics,

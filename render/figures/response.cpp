@@ -44,7 +44,8 @@ Figure frequency_response_figure(const CampaignResults& results) {
              .legend = Legend::kAbove};
   Panel phase{.title = "(b) Phase: estimated against true heave",
               .x = period,
-              .y = {.label = "Phase", .unit = "\u00B0"}};
+              .y = {.label = "Phase", .unit = "\u00B0"},
+              .legend = Legend::kNone};
   gain.marks.emplace_back(
       Rule{.at = 1, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kDashed}});
   phase.marks.emplace_back(
