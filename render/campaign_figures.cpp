@@ -12,6 +12,9 @@
 #include "render/figures/direction.h"
 #include "render/figures/methods.h"
 #include "render/figures/noise.h"
+#include "render/figures/run_time.h"
+#include "render/figures/sea.h"
+#include "render/figures/settings.h"
 #include "render/scene/film.h"
 
 namespace waverig::render {
@@ -91,9 +94,14 @@ const evaluation::RunResult* paper_run(const evaluation::CampaignResults& result
 std::vector<NamedFigure> result_figures(const evaluation::CampaignResults& results) {
   std::vector<NamedFigure> figures;
   if (results.cells.empty()) return figures;
-  figures.push_back({"paper-table-2", table2_figure(results)});
-  figures.push_back({"error-map", error_map_figure(results)});
-  figures.push_back({"std-map", std_map_figure(results)});
+  if (are_seas(results)) {
+    figures.push_back({"sea-states", sea_states_figure(results)});
+    figures.push_back({"sea-heave-map", sea_heave_map_figure(results)});
+  } else {
+    figures.push_back({"paper-table-2", table2_figure(results)});
+    figures.push_back({"error-map", error_map_figure(results)});
+    figures.push_back({"std-map", std_map_figure(results)});
+  }
   figures.push_back({"frequency-response", frequency_response_figure(results)});
   figures.push_back({"single-waves", single_waves_figure(results)});
   figures.push_back({"uncertainty-budget", uncertainty_budget_figure(results)});
@@ -117,6 +125,7 @@ std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
     figures.push_back({"paper-6-without-calibration", corrected_trace_figure(run, raw, false)});
   if (!calibrated.heave.empty())
     figures.push_back({"paper-7-with-calibration", corrected_trace_figure(run, calibrated, true)});
+  if (is_on_sea(run)) figures.push_back({"sea-trace", sea_trace_figure(run)});
   double noise = kAuto;
   for (const evaluation::RunResult& result : results.runs) {
     if (result.run == run.run) noise = result.noise_density_mps2_rthz;

@@ -28,11 +28,11 @@ struct FigureOptions {
 struct FigureInfo {
   std::string_view stem, group, caption;
 };
-inline constexpr std::array<FigureInfo, 15> kFigureOrder = {{
+inline constexpr std::array<FigureInfo, 18> kFigureOrder = {{
     {"rig", "The rig",
-     "The rig in the run of the figures below: the arm turns, the gondola "
-     "swings; the water is the wave that "
-     "it stands for."},
+     "The rig in the run of the figures below: the arm turns, the gondola swings; the water is the wave that "
+     "it "
+     "stands for. On a sea, the buoy: beside it the water is what came by before and comes by after."},
     {"paper-table-2", "As in the paper",
      "Table 2 as a chart: what was published beside what each method gives, "
      "with the physical limit of "
@@ -44,6 +44,10 @@ inline constexpr std::array<FigureInfo, 15> kFigureOrder = {{
      "calibrated."},
     {"paper-7-with-calibration", "As in the paper",
      "Figure 7: corrected trace and wave heights, accelerometer calibrated."},
+    {"sea-states", "Accuracy",
+     "Sea states: error of the heave, of the significant height Hm0 and of the mean period Tm02."},
+    {"sea-heave-map", "Accuracy", "Error of the heave over peak period and Hm0."},
+    {"sea-trace", "Accuracy", "Heave of each method beside the true one, and its error."},
     {"error-map", "Accuracy", "Error of the mean wave height over period and height."},
     {"std-map", "Accuracy",
      "Standard deviation of single waves over period and height, the physical "

@@ -35,6 +35,34 @@ float widest_label(const Ticks& ticks, const FontBook& fonts, float size_px) {
   return widest;
 }
 
+// Names of categories side by side: wrapped, each into the room up to its named neighbours. Where many do not
+// fit, every second is left out, every third…; where few, they are shortened.
+void fit_categories(std::vector<Tick>& ticks, float pitch_px, const FontBook& fonts, float size_px) {
+  constexpr std::size_t kMany = 8;
+  const std::vector<Tick> given = ticks;
+  for (std::size_t every = 1; every < std::max<std::size_t>(2, given.size()); ++every) {
+    std::vector<std::size_t> named;
+    for (std::size_t i = 0; i < given.size(); i += every) {
+      if (!given[i].label.empty()) named.push_back(i);
+    }
+    ticks = given;
+    for (Tick& t : ticks) t.label.clear();
+    bool whole = true;
+    for (std::size_t k = 0; k < named.size(); ++k) {
+      std::size_t apart = given.size();
+      if (k > 0) apart = std::min(apart, named[k] - named[k - 1]);
+      if (k + 1 < named.size()) apart = std::min(apart, named[k + 1] - named[k]);
+      const std::string& name = given[named[k]].label;
+      std::string& label = ticks[named[k]].label;
+      for (const std::string& line :
+           wrapped(name, pitch_px * static_cast<float>(apart) - 0.6F * size_px, 3, fonts, size_px))
+        label += (label.empty() ? "" : "\n") + line;
+      whole &= label.find("\u2026") == std::string::npos || name.find("\u2026") != std::string::npos;
+    }
+    if (whole || given.size() <= kMany) return;
+  }
+}
+
 class Planner {
  public:
   Planner(const Figure& figure, const FontBook& fonts) : figure_(figure), fonts_(fonts) {
@@ -225,13 +253,7 @@ class Planner {
     p.x_ticks = ticks_of(p.panel.x, p.x, p.plot.width(), 24 * tpt, fonts_, tick, true);
     p.y_ticks = ticks_of(p.panel.y, p.y, p.plot.height(), 15 * tpt, fonts_, tick, false);
     if (!p.panel.x.categories.empty()) {
-      const float slot = p.plot.width() / static_cast<float>(p.x.high - p.x.low) - 0.6F * tick;
-      for (Tick& t : p.x_ticks.major) {
-        std::string joined;
-        for (const std::string& line : wrapped(t.label, slot, 3, fonts_, tick))
-          joined += (joined.empty() ? "" : "\n") + line;
-        t.label = joined;
-      }
+      fit_categories(p.x_ticks.major, p.plot.width() / static_cast<float>(p.x.high - p.x.low), fonts_, tick);
     }
     if (!p.panel.y.categories.empty()) {
       const float most =

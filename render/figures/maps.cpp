@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/figures/accuracy.h"
+#include "render/figures/sea.h"
 #include "render/figures/settings.h"
 
 namespace waverig::render {
@@ -35,9 +36,14 @@ Panel map_panel(const Grid& grid, std::string title, HeatMap map, Value value) {
 Figure maps_figure(std::string title, std::string subtitle, std::vector<Panel> panels, double low,
                    double high, const Grid& grid) {
   Figure figure{.title = std::move(title), .subtitle = std::move(subtitle)};
-  figure.columns = panels.size() <= 3 ? static_cast<int>(panels.size()) : panels.size() == 4 ? 2 : 3;
+  const bool wide = grid.periods_s.size() > 6;  // side by side they would leave no room for numbers
+  figure.columns = wide                 ? 1
+                   : panels.size() <= 3 ? static_cast<int>(panels.size())
+                   : panels.size() == 4 ? 2
+                                        : 3;
   const double rows = std::ceil(static_cast<double>(panels.size()) / std::max(1, figure.columns));
-  figure.height_mm = 22 + rows * std::clamp(26 + 9 * static_cast<double>(grid.heights_m.size()), 45.0, 90.0);
+  const double heights = static_cast<double>(grid.heights_m.size());
+  figure.height_mm = 22 + rows * (wide ? 20 + 6 * heights : std::clamp(26 + 9 * heights, 45.0, 90.0));
   for (std::size_t i = 0; i < panels.size(); ++i) {
     auto& map = std::get<HeatMap>(panels[i].marks.front());
     map.low = low;
@@ -111,6 +117,33 @@ Figure std_map_figure(const CampaignResults& results) {
                      "over the waves of all repeats; logarithmic colours, one "
                      "scale for all maps",
                      std::move(panels), low, high, grid);
+}
+
+Figure sea_heave_map_figure(const CampaignResults& results) {
+  const std::vector<Setting> settings = settings_of(results);
+  const Grid grid(settings);
+  std::vector<Panel> panels;
+  double low = 1e9, high = 0;
+  for (const std::string& method : methods_of(results)) {
+    const auto value = [&](const Setting& s) {
+      const CellResult* c = cell_of(results, s, method);
+      return c == nullptr ? kAuto : 100 * c->heave_rmse_m / c->true_hm0_m;
+    };
+    for (const Setting& s : settings) {
+      if (const double v = value(s); std::isfinite(v) && v > 0) {
+        low = std::min(low, v);
+        high = std::max(high, v);
+      }
+    }
+    panels.push_back(map_panel(
+        grid, method, {.label = "RMS error", .unit = "% of Hm0", .log_colors = true, .decimals = 2}, value));
+    panels.back().x.label = "Set peak period";
+    panels.back().y.label = "Set Hm0";
+  }
+  return maps_figure(
+      "Error of the heave on irregular seas",
+      "root mean square in percent of the true Hm0; logarithmic colours, one scale for all maps",
+      std::move(panels), low, high, grid);
 }
 
 }  // namespace waverig::render

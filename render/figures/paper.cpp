@@ -6,19 +6,24 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "render/figures/run_time.h"
 #include "render/published.h"
 
 namespace waverig::render {
 namespace {
 
-double since_start_s(const evaluation::RunRecord& run, std::int64_t utime) {
-  return static_cast<double>(utime - run.start_utime) * kMicrosecond;
+std::string setting_text(const evaluation::RunRecord& run) {
+  return fmt::format("{} {:g} s, {} {:g} cm, repeat {}", is_on_sea(run) ? "peak period" : "wave period",
+                     run.period_s, is_on_sea(run) ? "Hm0" : "wave height", run.height_m / kCentimetre,
+                     run.repeat + 1);
 }
 
-std::string setting_text(const evaluation::RunRecord& run) {
-  return fmt::format("wave period {:g} s, wave height {:g} cm, repeat {}", run.period_s,
-                     run.height_m / kCentimetre, run.repeat + 1);
+// More waves than these make a scribble of a trace.
+double shown_end_s(const evaluation::RunRecord& run, double end_s) {
+  constexpr double kMostPeriods = 60;
+  return std::min(end_s, since_start_s(run, run.steady_begin_utime) + kMostPeriods * run.period_s);
 }
 
 const char* calibration_text(bool calibrated) {
@@ -33,10 +38,11 @@ bool steady(const evaluation::RunRecord& run, const estimator::Wave& wave) {
 // What lies outside the steady part is shaded: it is in no statistics.
 void shade_ramps(const evaluation::RunRecord& run, double end_s, Panel& panel, bool named) {
   if (run.steady_end_utime <= run.steady_begin_utime) return;
-  panel.marks.emplace_back(Span{.from = 0,
-                                .to = since_start_s(run, run.steady_begin_utime),
-                                .name = named ? "rest and ramps, left out of the statistics" : ""});
-  panel.marks.emplace_back(Span{.from = since_start_s(run, run.steady_end_utime), .to = end_s});
+  const double begin_s = since_start_s(run, run.steady_begin_utime),
+               steady_end_s = since_start_s(run, run.steady_end_utime);
+  std::string name = named ? "rest and ramps, left out of the statistics" : "";
+  if (begin_s > 0) panel.marks.emplace_back(Span{.from = 0, .to = begin_s, .name = std::exchange(name, "")});
+  if (end_s > steady_end_s) panel.marks.emplace_back(Span{.from = steady_end_s, .to = end_s, .name = name});
 }
 
 // A constant error of the acceleration makes a parabola of the trace.
@@ -127,7 +133,7 @@ Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces&
     for (std::size_t axis = 0; axis < 3; ++axis)
       f_B[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
   }
-  const double end_s = sample_s.empty() ? 0 : sample_s.back();
+  const double end_s = shown_end_s(run, sample_s.empty() ? 0 : sample_s.back());
   const Axis time{.label = "Time since the start of the record", .unit = "s", .low = 0, .high = end_s};
   const auto add = [&](const char* title, const char* label, const char* unit, const std::vector<double>& x,
                        std::vector<double> y, int color) {
@@ -201,36 +207,40 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
     sum_m += wave.height_m;
     square_m2 += wave.height_m * wave.height_m;
   }
+  const bool sea = is_on_sea(run);
   const double mean_m = n > 0 ? sum_m / n : kAuto;
   const double std_m = n > 1 ? std::sqrt(std::max(0.0, (square_m2 - n * mean_m * mean_m) / (n - 1))) : kAuto;
   std::string statistics = "no steady waves";
   if (n > 1) {
-    statistics = fmt::format(
-        "mean {:.2f} cm, error rate {:.2f} %, standard deviation "
-        "{:.2f} cm over {:.0f} waves",
-        mean_m / kCentimetre, 100 * std::abs(mean_m - run.height_m) / run.height_m, std_m / kCentimetre, n);
+    // Of an irregular sea no single height is set that the mean could miss.
+    const std::string error =
+        sea ? "" : fmt::format("error rate {:.2f} %, ", 100 * std::abs(mean_m - run.height_m) / run.height_m);
+    statistics = fmt::format("mean {:.2f} cm, {}standard deviation {:.2f} cm over {:.0f} waves",
+                             mean_m / kCentimetre, error, std_m / kCentimetre, n);
   }
   const PublishedCell& published = calibrated ? kPublishedCalibrated : kPublishedUncalibrated;
-  if (published_cell(run.period_s, run.height_m) != nullptr && run.period_s == published.period_s &&
+  if (!sea && published_cell(run.period_s, run.height_m) != nullptr && run.period_s == published.period_s &&
       run.height_m == published.height_m) {
     statistics += fmt::format(
         "\npublished: mean {:.2f} cm, error rate {:.2f} "
         "%, standard deviation {:.2f} cm",
         published.mean_height_m / kCentimetre, published.error_rate_percent, published.std_m / kCentimetre);
   }
-  if (!calibrated && !traces.heave.empty()) statistics += bias_text(run, traces);
+  if (!calibrated && !sea && !traces.heave.empty()) statistics += bias_text(run, traces);
   Figure figure{.title = calibrated ? "Trace and wave heights with the accelerometer calibrated"
                                     : "Trace and wave heights without accelerometer calibration",
                 .subtitle = setting_text(run) + "\n" + traces.method + ": " + statistics,
                 .share_x = true,
                 .height_mm = 125};
   double end_s = trace.x.empty() ? 0 : trace.x.back();
-  Line truth{.name = "true heave less half the set height", .look = {.color = kFaintInk, .width_pt = 0.7}};
+  Line truth{.name = sea ? "true heave less half of Hm0" : "true heave less half the set height",
+             .look = {.color = kFaintInk, .width_pt = 0.7}};
   for (const evaluation::TruthSample& sample : run.truth) {
     truth.x.push_back(since_start_s(run, sample.utime));
     truth.y.push_back((sample.heave_m - 0.5 * run.height_m) / kCentimetre);
     end_s = std::max(end_s, truth.x.back());
   }
+  end_s = shown_end_s(run, end_s);
   const Axis time{.label = "Time since the start of the record", .unit = "s", .low = 0, .high = end_s};
   Panel top{.title = "(a) Trace of the buoy", .x = time, .y = {.label = "Heave", .unit = "cm"}};
   shade_ramps(run, end_s, top, false);
@@ -239,7 +249,7 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
   top.legend = Legend::kAbove;
   Panel bottom{.title = "(b) Wave height", .x = time, .y = {.label = "Wave height", .unit = "cm"}};
   shade_ramps(run, end_s, bottom, true);
-  bottom.marks.emplace_back(Rule{.at = run.height_m / kCentimetre, .name = "set height"});
+  bottom.marks.emplace_back(Rule{.at = run.height_m / kCentimetre, .name = sea ? "set Hm0" : "set height"});
   bottom.marks.emplace_back(std::move(other_heights));
   bottom.marks.emplace_back(std::move(steady_heights));
   bottom.legend = Legend::kAbove;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "motion/kinematics/frames.h"
@@ -39,10 +40,35 @@ std::vector<std::string> methods_of(const CampaignResults& results) {
 double cm(double metres) { return metres / kCentimetre; }
 
 Axis settings_axis(const std::vector<Setting>& settings) {
+  constexpr std::size_t kMostWithUnits = 8, kMostNamed = 20;  // more would not fit side by side
   Axis axis{.label = "Set period and height"};
-  for (const Setting& s : settings)
-    axis.categories.push_back(fmt::format("{:g} s\n{:g} cm", s.period_s, cm(s.height_m)));
+  if (settings.size() > kMostNamed) {  // each period once, amid its heights
+    axis.label = "Set period in s; within each the heights rise";
+    axis.categories.assign(settings.size(), "");
+    for (std::size_t from = 0, to = 0; from < settings.size(); from = to) {
+      while (to < settings.size() && settings[to].period_s == settings[from].period_s) ++to;
+      axis.categories[(from + to - 1) / 2] = fmt::format("{:g}", settings[from].period_s);
+    }
+    return axis;
+  }
+  const bool units = settings.size() <= kMostWithUnits;
+  if (!units) axis.label = "Set period in s, below it the height in cm";
+  for (const Setting& s : settings) {
+    axis.categories.push_back(units ? fmt::format("{:g} s\n{:g} cm", s.period_s, cm(s.height_m))
+                                    : fmt::format("{:g}\n{:g}", s.period_s, cm(s.height_m)));
+  }
   return axis;
+}
+
+bool is_sea(double true_hm0_m, double set_height_m) { return true_hm0_m < 1.2 * set_height_m; }
+
+bool are_seas(const CampaignResults& results) {
+  std::size_t known = 0, seas = 0;
+  for (const CellResult& cell : results.cells) {
+    known += std::isfinite(cell.true_hm0_m);
+    seas += is_sea(cell.true_hm0_m, cell.height_m);
+  }
+  return known > 0 && 2 * seas > known;
 }
 
 Grid::Grid(const std::vector<Setting>& settings) {

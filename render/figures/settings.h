@@ -21,7 +21,13 @@ const evaluation::CellResult* cell_of(const evaluation::CampaignResults& results
 // Methods as every figure shows them: the palette number of each is its place here.
 std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
 
-Axis settings_axis(const std::vector<Setting>& settings);  // one category each
+Axis settings_axis(const std::vector<Setting>& settings);  // one category each, named where there is room
+
+// Whether the set heights are Hm0 of irregular seas, told from the true heave: of regular waves four standard
+// deviations are sqrt(2) heights.
+bool is_sea(double true_hm0_m, double set_height_m);
+bool are_seas(const evaluation::CampaignResults& results);  // most cells
+
 double cm(double metres);
 
 // The grid of periods and heights that a campaign spans.

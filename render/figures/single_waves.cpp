@@ -13,11 +13,11 @@ using evaluation::CampaignResults;
 using evaluation::RunResult;
 
 Figure single_waves_figure(const CampaignResults& results) {
-  constexpr std::size_t kMostSlots =
-      12;  // settings side by side; more, and errors stand over the true height
+  constexpr std::size_t kMostSlots = 60;  // settings side by side
   const std::vector<Setting> settings = settings_of(results);
   const std::vector<std::string> methods = methods_of(results);
-  const bool slots = settings.size() <= kMostSlots;
+  // Of regular waves all heights of a setting are one: its waves stand side by side in their order instead.
+  const bool slots = !are_seas(results) && settings.size() <= kMostSlots;
   Figure figure{.title = "Single waves, estimated against true", .columns = 3, .height_mm = 95};
   Panel against{.title = "(a) Against true height",
                 .x = {.label = "True height", .unit = "cm"},

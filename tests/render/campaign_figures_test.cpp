@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lcmtypes/error.h"
 #include "render/figures/calibration.h"
 #include "render/figures/direction.h"
 #include "render/figures/methods.h"
+#include "render/figures/sea.h"
 #include "tests/render/example_campaign.h"
 #include "tests/render/picture.h"
 
@@ -15,9 +17,8 @@ namespace waverig::render {
 namespace {
 
 // Every figure of a campaign, without its logs on disk.
-std::vector<NamedFigure> all_figures() {
-  const evaluation::CampaignResults results = test::example_campaign();
-  const evaluation::RunRecord run = test::example_run();
+std::vector<NamedFigure> figures_of(const evaluation::CampaignResults& results,
+                                    const evaluation::RunRecord& run) {
   FigureOptions options;
   options.uncalibrated = [](const evaluation::RunRecord& r) { return recorded_traces(r, "lee2014"); };
   std::vector<NamedFigure> figures = run_figures(results, run, options);
@@ -25,8 +26,18 @@ std::vector<NamedFigure> all_figures() {
   return figures;
 }
 
+std::vector<NamedFigure> all_figures() { return figures_of(test::example_campaign(), test::example_run()); }
+std::vector<NamedFigure> sea_figures() {
+  return figures_of(test::example_sea_campaign(), test::example_sea_run());
+}
+
+bool holds(const std::vector<NamedFigure>& figures, std::string_view stem) {
+  return std::any_of(figures.begin(), figures.end(), [&](const NamedFigure& f) { return f.stem == stem; });
+}
+
 TEST(CampaignFigures, AreAllThoseThatTheReportNames) {
-  const std::vector<NamedFigure> figures = all_figures();
+  std::vector<NamedFigure> figures = all_figures();
+  for (NamedFigure& figure : sea_figures()) figures.push_back(std::move(figure));
   for (const FigureInfo& info : kFigureOrder) {
     if (info.stem == "rig") continue;  // not a plot
     EXPECT_TRUE(std::any_of(figures.begin(), figures.end(), [&](const NamedFigure& f) {
@@ -55,6 +66,69 @@ TEST(CampaignFigures, AreTheSameBytesForAnyNumberOfThreads) {
     std::filesystem::path svg = single[i], other = triple[i];
     EXPECT_EQ(test::bytes_of(svg.replace_extension("svg")), test::bytes_of(other.replace_extension("svg")));
   }
+}
+
+// On a sea the set height is Hm0: no single wave has it, and the paper's table has no part in it.
+TEST(CampaignFigures, OfSeasJudgeStatesInsteadOfSetHeights) {
+  const std::vector<NamedFigure> regular = all_figures(), seas = sea_figures();
+  for (const char* stem : {"paper-table-2", "error-map", "std-map"}) {
+    EXPECT_TRUE(holds(regular, stem)) << stem;
+    EXPECT_FALSE(holds(seas, stem)) << stem;
+  }
+  for (const char* stem : {"sea-states", "sea-heave-map", "sea-trace"}) {
+    EXPECT_FALSE(holds(regular, stem)) << stem;
+    EXPECT_TRUE(holds(seas, stem)) << stem;
+  }
+  for (const NamedFigure& f : seas) {
+    EXPECT_EQ(f.figure.subtitle.find("error rate"), std::string::npos) << f.stem;
+    EXPECT_EQ(f.figure.subtitle.find("published"), std::string::npos) << f.stem;
+  }
+}
+
+TEST(SeaStates, AreTheRatiosToTheTruth) {
+  const Figure figure = sea_states_figure(test::example_sea_campaign());
+  ASSERT_EQ(figure.panels.size(), 3U);
+  const auto values_of = [&](std::size_t panel, const std::string& method) {
+    for (const Mark& mark : figure.panels[panel].marks) {
+      if (const auto* points = std::get_if<Points>(&mark); points != nullptr && points->name == method)
+        return points->y;
+    }
+    return std::vector<double>{};
+  };
+  ASSERT_EQ(values_of(0, "harmonic").size(), 6U);
+  for (const double percent : values_of(0, "harmonic")) EXPECT_NEAR(percent, 1, 1e-9);
+  for (const double percent : values_of(0, "lee2014")) EXPECT_NEAR(percent, 10, 1e-9);
+  for (const double percent : values_of(1, "harmonic")) EXPECT_NEAR(percent, 0.5, 1e-9);
+  for (const double percent : values_of(2, "harmonic")) EXPECT_NEAR(percent, -0.2, 1e-9);
+  EXPECT_TRUE(values_of(1, "lee2014").empty()) << "it gives no sea state";
+}
+
+TEST(SeaTrace, ErrorsHaveNoMeanAndTheTruthIsTrue) {
+  const Figure figure = sea_trace_figure(test::example_sea_run());
+  ASSERT_EQ(figure.panels.size(), 2U);
+  for (const Mark& mark : figure.panels[1].marks) {
+    const Line& error = std::get<Line>(mark);
+    double sum = 0;
+    for (const double y : error.y) sum += y;
+    EXPECT_NEAR(sum / static_cast<double>(error.y.size()), 0, 1e-9);
+  }
+  const Line& harmonic = std::get<Line>(figure.panels[1].marks[1]);
+  for (const double y : harmonic.y) EXPECT_LT(std::abs(y), 1) << "0.4 cm of error was put in";
+}
+
+// The closed form of figure 6's note: a bias b alone gives waves of b T^2 / pi^2.
+TEST(PaperFigures, NameTheBiasOfAnUncalibratedAccelerometer) {
+  const evaluation::RunRecord run = test::example_run(12, 1.0, 120);
+  PaperTraces traces = recorded_traces(run, "harmonic");
+  constexpr double kBias = 0.2;
+  for (estimator::HeaveSample& sample : traces.heave) {
+    const double t = static_cast<double>(sample.utime - run.start_utime) * 1e-6;
+    sample.heave_m += 0.5 * kBias * t * t;
+  }
+  const std::string subtitle = corrected_trace_figure(run, traces, false).subtitle;
+  EXPECT_NE(subtitle.find("b = 0.200 m/s\u00B2"), std::string::npos) << subtitle;
+  EXPECT_NE(subtitle.find("= 292 cm"), std::string::npos) << subtitle;
+  EXPECT_EQ(corrected_trace_figure(run, traces, true).subtitle.find("b ="), std::string::npos);
 }
 
 TEST(CampaignFigures, ShowTheLongestAndHighestRun) {

@@ -161,6 +161,23 @@ TEST(Figure, FitsVeryLongTextIntoThePage) {
   EXPECT_GT(blue_pixels(image), 100U) << "the plot vanished";
 }
 
+// Every cell of a map shows its number or none does; on logarithmic colours with the digits that count.
+TEST(Figure, WritesNumbersIntoAllCellsOfAMapOrNone) {
+  HeatMap map{.x_edges = {0, 1, 2, 3}, .y_edges = {0, 1}, .values = {0.256, 21.4, 1.62}, .decimals = 2};
+  Canvas canvas;
+  const auto svg = [&](double width_mm) {
+    Figure figure = one_panel({map});
+    figure.width_mm = width_mm;
+    return svg_text(figure, canvas.fonts(), {});
+  };
+  EXPECT_NE(svg(80).find(">21.40<"), std::string::npos);
+  map.log_colors = true;
+  for (const char* text : {">0.26<", ">21<", ">1.6<"})
+    EXPECT_NE(svg(80).find(text), std::string::npos) << text;
+  for (const char* text : {">0.26<", ">21<", ">1.6<"})
+    EXPECT_EQ(svg(30).find(text), std::string::npos) << text;
+}
+
 TEST(Figure, DrawsManyPanelsInLittleRoom) {
   Figure figure{.columns = 6, .width_mm = 40, .height_mm = 30};
   for (int i = 0; i < 36; ++i)

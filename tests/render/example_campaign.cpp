@@ -66,6 +66,7 @@ CampaignResults example_campaign() {
           if (!baseline) run.seas.push_back({.sea = sea});
           results.runs.push_back(run);
         }
+        cell.true_hm0_m = std::numbers::sqrt2 * height_m;
         evaluation::HeightStatistics& s = cell.statistics;
         s.waves = 20;
         s.mean_height_m = height_m + bias_m;
@@ -136,6 +137,27 @@ evaluation::RunRecord example_run(double period_s, double height_m, double stead
     run.waves["lee2014"].push_back(wave);
     run.waves["harmonic"].push_back(wave);
   }
+  return run;
+}
+
+CampaignResults example_sea_campaign() {
+  CampaignResults results = example_campaign();
+  results.name = "example seas";
+  for (evaluation::CellResult& cell : results.cells) {
+    cell.true_hm0_m = 0.99 * cell.height_m;
+    cell.heave_rmse_m = cell.method == "harmonic" ? 0.01 * cell.true_hm0_m : 0.1 * cell.true_hm0_m;
+    if (cell.method != "harmonic") continue;
+    cell.sea.sea.hm0_m = 1.005 * cell.true_hm0_m;
+    cell.sea.true_hm0_m = cell.true_hm0_m;
+    cell.sea.sea.tm02_s = 0.998 * cell.period_s;
+    cell.sea.true_tm02_s = cell.period_s;
+  }
+  return results;
+}
+
+evaluation::RunRecord example_sea_run() {
+  evaluation::RunRecord run = example_run();
+  for (evaluation::TruthSample& sample : run.truth) sample.arm_angle_rad = estimator::kUnknown;
   return run;
 }
 

@@ -12,6 +12,10 @@ evaluation::CampaignResults example_campaign();
 // "lee2014" (it drifts).
 evaluation::RunRecord example_run(double period_s = 12, double height_m = 1.0, double steady_s = 60);
 
+// The same on irregular seas: heights are Hm0, "harmonic" gives sea states.
+evaluation::CampaignResults example_sea_campaign();
+evaluation::RunRecord example_sea_run();
+
 // Calibration report as a campaign writes it.
 std::string example_calibration();
 

@@ -52,6 +52,30 @@ TEST(Layout, SharedAxesSpanTheDataOfAllTheirPanels) {
   }
 }
 
+TEST(Layout, ManyCategoriesAreThinnedOutAndFewAreShortened) {
+  const auto labels_of = [](std::size_t n, const std::string& name) {
+    Figure figure{.width_mm = 100, .height_mm = 60};
+    figure.panels.push_back({.marks = {cosine()}});
+    figure.panels[0].x.categories.assign(n, name);
+    FontBook fonts;
+    const FigurePlan plan = plan_of(figure, fonts);
+    std::vector<std::string> labels;
+    for (const Tick& tick : plan.panels[0].x_ticks.major) labels.push_back(tick.label);
+    return labels;
+  };
+  const std::vector<std::string> many = labels_of(60, "12.5");
+  EXPECT_EQ(many.size(), 60U) << "every category keeps its tick";
+  std::size_t named = 0;
+  for (const std::string& label : many) {
+    EXPECT_TRUE(label.empty() || label == "12.5") << label;
+    named += !label.empty();
+  }
+  EXPECT_GT(named, 5U);
+  EXPECT_LT(named, 31U);
+  for (const std::string& label : labels_of(4, std::string(80, 'W')))
+    EXPECT_NE(label.find("\u2026"), std::string::npos);
+}
+
 TEST(Layout, RowsTakeTheirShareOfTheHeight) {
   Figure figure{.columns = 1, .row_heights = {3, 1}};
   figure.panels = {{.marks = {cosine()}}, {.marks = {cosine()}}};

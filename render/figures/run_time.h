@@ -1,0 +1,18 @@
+// What the figures of a single run ask of its record.
+#pragma once
+#include <cmath>
+
+#include "estimator/evaluation/run_record.h"
+
+namespace waverig::render {
+
+inline double since_start_s(const evaluation::RunRecord& run, std::int64_t utime) {
+  return static_cast<double>(utime - run.start_utime) * kMicrosecond;
+}
+
+// A buoy on an irregular sea instead of the rig's arm: the set period and height are Tp and Hm0.
+inline bool is_on_sea(const evaluation::RunRecord& run) {
+  return !run.truth.empty() && !std::isfinite(run.truth.front().arm_angle_rad);
+}
+
+}  // namespace waverig::render
