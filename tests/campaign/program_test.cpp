@@ -115,6 +115,18 @@ TEST(Program, ResultsDirectoryAloneReproducesItself) {
   EXPECT_EQ(bytes_of(temporary / "first/results.csv"), bytes_of(temporary / "second/results.csv"));
 }
 
+TEST(Program, EstimatesARecordedRunAsTheSweepDid) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out out").status, 0);
+  const Outcome outcome =
+      run(temporary, "estimate out/runs/T04.00s_H050.0cm_r1.lcm --method harmonic --out again");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::size_t at = outcome.out.find("\"h13_m\":");
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  EXPECT_NEAR(std::stod(outcome.out.substr(at + 8)), 0.5, 0.02) << "of the steady waves: the ramps' are lower";
+}
+
 std::string six_sides(double bias_mps2) {
   std::string text = "utime,ax,ay,az,gx,gy,gz\n";
   for (int row = 0; row < 6 * 600; ++row) {
