@@ -8,11 +8,11 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kRidge = 1e-5;  // of the variance: white, so that no frequency is ruled out
-constexpr double kBiasCorner_radps =
-    0.05;  // below it the bias walk outweighs the noise: 0.1 mg in 100 s beside 350 ug/rtHz
-constexpr double kFast_hz = 0.5;     // half of what nodes half a second apart can tell
-constexpr double kFastShare = 0.02;  // of the sea's variance above it: needs the fine nodes
+constexpr double kRidge = 1e-5;             // of the variance: white, so that no frequency is ruled out
+constexpr double kBiasCorner_radps = 0.02;  // below it the bias walk outweighs the noise: half the data
+                                            // sheet's, whose 0.1 mg in 100 s need 0.05
+constexpr double kFast_hz = 0.5;            // half of what nodes half a second apart can tell
+constexpr double kFastShare = 0.02;         // of the sea's variance above it: needs the fine nodes
 constexpr double kUnknownPeak_hz = 1.0 / 14;
 
 }  // namespace

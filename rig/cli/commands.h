@@ -23,11 +23,12 @@ void add_compare(CLI::App& app, Command& chosen);
 void add_calibrate(CLI::App& app, Command& chosen);
 void add_calibrations(CLI::App& app, Command& chosen);
 void add_bench(CLI::App& app, Command& chosen);
+void add_bench_estimators(CLI::App& app, Command& chosen);
 void add_analyse(CLI::App& app, Command& chosen);
 void add_node(CLI::App& app, Command& chosen);
 
 inline constexpr void (*kCommands[])(CLI::App&, Command&) = {
     add_sweep, add_plan, add_estimate, add_evaluate, add_figures, add_report, add_film, add_compare, add_merge, add_node, add_analyse,
-    add_bench, add_calibrate};
+    add_bench, add_bench_estimators, add_calibrate};
 
 }  // namespace waverig::cli
