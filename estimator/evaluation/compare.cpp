@@ -16,8 +16,13 @@ double mean_error_m(const CellResult& cell) {
   return std::abs(s.mean_height_m - reference);
 }
 
-double std_sigma_m(const HeightStatistics& s) {
-  return s.waves > 1 ? s.std_m / std::sqrt(2.0 * static_cast<double>(s.waves - 1)) : estimator::kUnknown;
+double scatter_m(const CellResult& cell) {
+  return is_sea(cell) ? cell.statistics.rmse_m : cell.statistics.std_m;
+}
+
+double scatter_sigma_m(const CellResult& cell) {
+  const std::int64_t waves = cell.statistics.waves;
+  return waves > 1 ? scatter_m(cell) / std::sqrt(2.0 * static_cast<double>(waves - 1)) : estimator::kUnknown;
 }
 
 Difference judged(double baseline, double candidate, double sigma) {
@@ -37,7 +42,8 @@ CellComparison compared(const CellResult& baseline, const CellResult& candidate)
   result.mean_error_m =
       judged(mean_error_m(baseline), mean_error_m(candidate),
              std::hypot(b.expanded_uncertainty_m, c.expanded_uncertainty_m) / kCoverageFactor);
-  result.std_m = judged(b.std_m, c.std_m, std::hypot(std_sigma_m(b), std_sigma_m(c)));
+  result.std_m = judged(scatter_m(baseline), scatter_m(candidate),
+                        std::hypot(scatter_sigma_m(baseline), scatter_sigma_m(candidate)));
   for (const Verdict verdict : {Verdict::kWorse, Verdict::kBetter})
     if (result.mean_error_m.verdict == verdict || result.std_m.verdict == verdict) {
       result.verdict = verdict;
@@ -61,7 +67,7 @@ CellComparison alone(const CellResult& cell, Verdict verdict) {
   CellComparison result{cell.period_s, cell.height_m, cell.method, {}, {}, verdict};
   const bool in_baseline = verdict == Verdict::kOnlyInBaseline;
   (in_baseline ? result.mean_error_m.baseline : result.mean_error_m.candidate) = mean_error_m(cell);
-  (in_baseline ? result.std_m.baseline : result.std_m.candidate) = cell.statistics.std_m;
+  (in_baseline ? result.std_m.baseline : result.std_m.candidate) = scatter_m(cell);
   result.mean_error_m.verdict = result.std_m.verdict = verdict;
   return result;
 }

@@ -9,6 +9,10 @@
 
 namespace waverig::evaluation {
 
+// Whether the set height is Hm0 of an irregular sea, told from the true heave: of regular waves four standard
+// deviations are sqrt(2) heights.
+inline bool is_sea(const CellResult& cell) { return cell.true_hm0_m < 1.2 * cell.height_m; }
+
 enum class Verdict { kBetter, kWorse, kNotSignificant, kOnlyInBaseline, kOnlyInCandidate };
 
 // One quantity of a cell; smaller is better. sigma: standard uncertainty of the difference, k = 1.
@@ -24,7 +28,8 @@ struct CellComparison {
   // |mean - true mean| (set height where the truth is unknown). Its uncertainty: the expanded uncertainties
   // / 2.
   Difference mean_error_m;
-  // Standard deviation of single waves. Its uncertainty: std / sqrt(2 (n - 1)), of normal scatter.
+  // Standard deviation of single waves; on irregular seas, whose waves differ by nature, the rms of their
+  // errors. Its uncertainty: std / sqrt(2 (n - 1)), of normal scatter.
   Difference std_m;
   Verdict verdict = Verdict::kNotSignificant;  // worse if either is, else better if either is
 };

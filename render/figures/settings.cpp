@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "estimator/evaluation/compare.h"
 #include "motion/kinematics/frames.h"
 #include "render/figures/methods.h"
 
@@ -60,13 +61,11 @@ Axis settings_axis(const std::vector<Setting>& settings) {
   return axis;
 }
 
-bool is_sea(double true_hm0_m, double set_height_m) { return true_hm0_m < 1.2 * set_height_m; }
-
 bool are_seas(const CampaignResults& results) {
   std::size_t known = 0, seas = 0;
   for (const CellResult& cell : results.cells) {
     known += std::isfinite(cell.true_hm0_m);
-    seas += is_sea(cell.true_hm0_m, cell.height_m);
+    seas += evaluation::is_sea(cell);
   }
   return known > 0 && 2 * seas > known;
 }

@@ -23,10 +23,8 @@ std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
 
 Axis settings_axis(const std::vector<Setting>& settings);  // one category each, named where there is room
 
-// Whether the set heights are Hm0 of irregular seas, told from the true heave: of regular waves four standard
-// deviations are sqrt(2) heights.
-bool is_sea(double true_hm0_m, double set_height_m);
-bool are_seas(const evaluation::CampaignResults& results);  // most cells
+// Whether the set heights are Hm0 of irregular seas, in most cells.
+bool are_seas(const evaluation::CampaignResults& results);
 
 double cm(double metres);
 

@@ -60,7 +60,7 @@ std::string comparison_html(const evaluation::CampaignResults& baseline, const f
       evaluation::compare_cells(baseline.cells, candidate.cells);
   HtmlTable table(
       "Error: of the mean height against the true mean, cm. Std: "
-      "of single waves, cm. A difference counts "
+      "of single waves, cm; on irregular seas the rms of their errors. A difference counts "
       "where it exceeds two standard uncertainties.",
       {"Period s", "Height cm", "Method", "Verdict", "Error, baseline", "Error, candidate", "Error: verdict",
        "Std, baseline", "Std, candidate", "Std: verdict"});

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <waverig/alarm_t.hpp>
 
@@ -13,7 +11,9 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/event_log.h"
 #include "render/campaign_figures.h"
+#include "render/figures/settings.h"
 #include "render/report/html.h"
+#include "render/report/report_parts.h"
 
 namespace waverig::render {
 namespace {
@@ -23,15 +23,10 @@ using evaluation::CampaignResults;
 using evaluation::CellResult;
 using evaluation::RunResult;
 
-double cm(double metres) { return metres / kCentimetre; }
-
-std::string setting_text(double period_s, double height_m) {
-  return fmt::format("{:g} s, {:g} cm", period_s, cm(height_m));
+std::string setting_text(const CellResult& cell) {
+  return fmt::format("{:g} s, {:g} cm", cell.period_s, cm(cell.height_m));
 }
 
-std::string cell_id(double period_s, double height_m, const std::string& method) {
-  return html_id(fmt::format("cell-{:g}s-{:g}cm-{}", period_s, cm(height_m), method));
-}
 std::string run_id(const RunResult& run) { return html_id("run-" + run.run + "-" + run.method); }
 std::string wave_id(const RunResult& run, const evaluation::JudgedWave& wave) {
   return run_id(run) + "-wave-" + std::to_string(wave.wave.seq);
@@ -43,11 +38,6 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-std::string content_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::string intro(const CampaignResults& results) {
   std::string out = fmt::format(
       "<header>\n<h1>Wave measurement campaign \u201C{}\u201D</h1>\n"
@@ -55,6 +45,7 @@ std::string intro(const CampaignResults& results) {
       "with this estimator, measure "
       "waves?</p>\n<ul class=\"answer\">\n",
       html_text(results.name));
+  if (are_seas(results)) out += sea_answer(results);
   for (const MethodSummary& s : summaries_of(results)) {
     out += fmt::format(
         "<li><strong>{}</strong>: the mean wave height is "
@@ -79,7 +70,7 @@ std::string intro(const CampaignResults& results) {
          "href=\"#reproduce\">Reproduce</a></li></ul></nav>\n</header>\n";
 }
 
-std::string results_section(const CampaignResults& results) {
+std::string results_table(const CampaignResults& results) {
   HtmlTable table(
       "Steady waves of all repeats; lengths in cm. U: expanded "
       "uncertainty of the mean, k = 2. Limit: "
@@ -89,7 +80,7 @@ std::string results_section(const CampaignResults& results) {
        "Std / limit", "RMSE"});
   for (const CellResult& cell : results.cells) {
     const evaluation::HeightStatistics& s = cell.statistics;
-    const std::string link = fmt::format("#{}", cell_id(cell.period_s, cell.height_m, cell.method));
+    const std::string link = fmt::format("#{}", cell_id(cell));
     table.add_row({number_cell(cell.period_s, cell.period_s == std::floor(cell.period_s) ? 0 : 2),
                    number_cell(cm(cell.height_m), 0), text_cell(cell.method),
                    number_cell(static_cast<double>(s.waves), 0, link),
@@ -98,7 +89,7 @@ std::string results_section(const CampaignResults& results) {
                    number_cell(cm(s.bound_std_m), 2), number_cell(s.std_m / s.bound_std_m, 2),
                    number_cell(cm(s.rmse_m), 2, link)});
   }
-  return "<section id=\"results\"><h2>Results</h2>\n" + table.html() + "</section>\n";
+  return table.html();
 }
 
 std::string figures_section(const fs::path& directory) {
@@ -185,7 +176,7 @@ std::string excluded_section(const CampaignResults& results, const fs::path& dir
       "<section id=\"excluded\"><h2>Excluded, flags and "
       "alarms</h2>\n<details><summary>Run by "
       "run</summary><div>" +
-      excluded.html() + "</div></details>\n";
+      excluded.html() + "</div></details>\n" + left_out_settings(results);
   out += alarms.empty() ? "<p>No run recorded an alarm.</p>\n" : alarms.html();
   return out + "</section>\n";
 }
@@ -193,7 +184,7 @@ std::string excluded_section(const CampaignResults& results, const fs::path& dir
 std::string runs_section(const CampaignResults& results) {
   std::string out = "<section id=\"runs\"><h2>Runs and waves</h2>\n";
   for (const CellResult& cell : results.cells) {
-    HtmlTable table(fmt::format("{}, {}", setting_text(cell.period_s, cell.height_m), cell.method),
+    HtmlTable table(fmt::format("{}, {}", setting_text(cell), cell.method),
                     {"Run", "Repeat", "Waves", "Mean cm", "True mean cm", "Std cm", "RMSE cm",
                      "Largest error cm", "Recording"});
     std::string waves;
@@ -235,32 +226,10 @@ std::string runs_section(const CampaignResults& results) {
           run_id(run), html_text(run.run), html_text(run.method), run.waves.size(), list.html());
     }
     if (table.empty()) continue;
-    out += fmt::format("<section id=\"{}\"><h3>{}, {}</h3>\n",
-                       cell_id(cell.period_s, cell.height_m, cell.method),
-                       html_text(setting_text(cell.period_s, cell.height_m)), html_text(cell.method)) +
+    out += fmt::format("<section id=\"{}\"><h3>{}, {}</h3>\n", cell_id(cell), html_text(setting_text(cell)),
+                       html_text(cell.method)) +
            table.html() + waves + "</section>\n";
   }
-  return out + "</section>\n";
-}
-
-std::string rig_section(const CampaignResults& results, const fs::path& directory) {
-  const std::string settings = content_of(directory / "campaign.toml");
-  if (settings.empty() && results.calibration_json.empty()) return "";
-  std::string out =
-      "<section id=\"rig\"><h2>Rig and sensor</h2>\n<p>A motion controller "
-      "turns an arm that carries a "
-      "gondola; the sensor riding in it streams to the estimator, and what the "
-      "estimator tells is held against what the mechanism really did.</p>\n";
-  if (!settings.empty())
-    out +=
-        "<details><summary>Settings as resolved, defaults "
-        "included</summary><pre>" +
-        html_text(settings) + "</pre></details>\n";
-  if (!results.calibration_json.empty())
-    out +=
-        "<details><summary>Calibration of the sensor at the campaign's "
-        "start</summary><pre>" +
-        html_text(results.calibration_json) + "</pre></details>\n";
   return out + "</section>\n";
 }
 
@@ -282,8 +251,13 @@ std::string reproduce_section(const CampaignResults& results) {
 
 }  // namespace
 
+std::string cell_id(const CellResult& cell) {
+  return html_id(fmt::format("cell-{:g}s-{:g}cm-{}", cell.period_s, cm(cell.height_m), cell.method));
+}
+
 std::vector<MethodSummary> summaries_of(const CampaignResults& results) {
   std::vector<MethodSummary> all;
+  if (are_seas(results)) return all;  // no single height was set that a mean could miss
   for (const CellResult& cell : results.cells) {
     const evaluation::HeightStatistics& s = cell.statistics;
     if (s.waves < 1) continue;
@@ -303,11 +277,12 @@ std::vector<MethodSummary> summaries_of(const CampaignResults& results) {
 }
 
 std::string report_html(const CampaignResults& results, const fs::path& directory) {
-  return html_page("waverig: " + results.name, intro(results) + "<main>\n" + results_section(results) +
-                                                   figures_section(directory) + budget_section(results) +
-                                                   excluded_section(results, directory) +
-                                                   runs_section(results) + rig_section(results, directory) +
-                                                   reproduce_section(results) + "</main>\n");
+  return html_page("waverig: " + results.name,
+                   intro(results) + "<main>\n<section id=\"results\"><h2>Results</h2>\n" +
+                       (are_seas(results) ? sea_results_table(results) : results_table(results)) +
+                       "</section>\n" + figures_section(directory) + budget_section(results) +
+                       excluded_section(results, directory) + runs_section(results) +
+                       rig_section(results, directory) + reproduce_section(results) + "</main>\n");
 }
 
 }  // namespace waverig::render

@@ -8,7 +8,7 @@
 
 namespace waverig::render {
 
-// What is said of the whole campaign of one method, for the first lines.
+// What is said of the whole campaign of one method, for the first lines; of irregular seas nothing.
 struct MethodSummary {
   std::string method;
   double worst_error_percent = 0;  // of the mean height, over the settings

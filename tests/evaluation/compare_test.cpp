@@ -50,6 +50,19 @@ TEST(Compare, JudgesTheScatterToo) {
   EXPECT_EQ(compared(cell(0.6, 0.0125, 0.002), cell(0.6, 0.010, 0.002)).verdict, Verdict::kBetter);
 }
 
+// The waves of a sea differ by nature: what counts is how far each was missed.
+TEST(Compare, JudgesTheErrorOfSingleWavesOnSeas) {
+  CellResult a = cell(0.6, 0.2, 0.002), b = cell(0.6, 0.1, 0.002);
+  a.statistics.rmse_m = 0.01;
+  b.statistics.rmse_m = 0.02;
+  EXPECT_EQ(compared(a, b).std_m.verdict, Verdict::kBetter) << "regular waves";
+  a.true_hm0_m = b.true_hm0_m = a.height_m;
+  const CellComparison c = compared(a, b);
+  EXPECT_EQ(c.std_m.verdict, Verdict::kWorse);
+  EXPECT_EQ(c.std_m.baseline, 0.01);
+  EXPECT_EQ(c.std_m.candidate, 0.02);
+}
+
 TEST(Compare, IsWorseWhereEitherIsWorse) {
   EXPECT_EQ(compared(cell(0.62, 0.010, 0.002), cell(0.6, 0.02, 0.002)).verdict, Verdict::kWorse);
 }

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "lcmtypes/error.h"
 #include "render/campaign_figures.h"
 #include "render/report/html.h"
 #include "tests/render/example_campaign.h"
@@ -101,6 +102,40 @@ TEST(Report, SummaryIsTheWorstOfAllSettings) {
   EXPECT_NEAR(baseline.worst_error_percent, 2.0, 1e-9);  // 1.2 cm of 60 cm
   EXPECT_NEAR(baseline.largest_std_m, 0.02, 1e-12);
   EXPECT_NEAR(baseline.worst_std_over_bound, 0.01 / 0.0026, 1e-9);
+}
+
+TEST(Report, OfSeasSpeaksOfHeaveAndSeaStates) {
+  const test::TemporaryFolder empty;
+  const evaluation::CampaignResults seas = test::example_sea_campaign();
+  EXPECT_TRUE(summaries_of(seas).empty());
+  const std::string html = report_html(seas, empty.path());
+  EXPECT_NE(
+      html.find("the heave is off by 1.00 to 1.00 % of Hm0 (rms); Hm0 is within 0.50 %, Tm02 within 0.20 %"),
+      std::string::npos);
+  EXPECT_NE(html.find("the heave is off by 10.00 to 10.00 % of Hm0 (rms).<"), std::string::npos);
+  EXPECT_EQ(html.find("of the set height in every setting"), std::string::npos);
+}
+
+TEST(Report, NamesTheSettingsThatWereNotRun) {
+  const test::TemporaryFolder empty;
+  evaluation::CampaignResults results = test::example_campaign();
+  EXPECT_EQ(report_html(results, empty.path()).find("were not run"), std::string::npos);
+  std::erase_if(results.cells, [](const auto& c) { return c.period_s == 6 && c.height_m > 0.7; });
+  EXPECT_NE(report_html(results, empty.path()).find("were not run: 6 s with 80, 100 cm."), std::string::npos);
+}
+
+TEST(Report, TellsTheSensorAndWhatItsCalibrationTookOut) {
+  const test::TemporaryFolder empty;
+  evaluation::CampaignResults results = test::example_campaign();
+  results.calibration_json = R"({"sensor_id": "A & B", "method": "six positions", "temperature_degC": 24.25,
+    "accelerometer": {"M": [[1.01, 0, 0], [0, 0.99, 0], [0, 0, 1]], "sigma_M": [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]],
+    "b_mps2": [0.25, -0.3, 0], "sigma_b_mps2": [0.001, 0.001, 0.001]}})";
+  const std::string html = report_html(results, empty.path());
+  EXPECT_NE(html.find("A &amp; B, calibrated in six positions"), std::string::npos);
+  for (const char* number : {">250.00<", ">\u2212300.00<", ">1.000<", ">\u22121.000<"})
+    EXPECT_NE(html.find(number), std::string::npos) << number;
+  results.calibration_json = "{";
+  EXPECT_THROW(report_html(results, empty.path()), UserError);
 }
 
 TEST(Comparison, CallsBetterWorseAndNotSignificant) {
