@@ -5,7 +5,7 @@
 namespace waverig::estimator {
 
 double DirectionBudget::total_rad() const {
-  return std::hypot(std::hypot(hard_iron_rad, soft_iron_rad), std::hypot(tilt_rad, declination_rad));
+  return std::hypot(std::hypot(hard_iron_rad, soft_iron_rad, tilt_rad), declination_rad, gyro_rad);
 }
 
 DirectionBudget direction_budget(const CompassKnowledge& knowledge, double dip_rad) {
@@ -13,7 +13,7 @@ DirectionBudget direction_budget(const CompassKnowledge& knowledge, double dip_r
   return {
       knowledge.hard_iron_sigma / horizontal, knowledge.soft_iron_sigma / horizontal,
       knowledge.tilt_sigma_rad * std::abs(std::tan(dip_rad)),  // eq. (38), level: A and B over all headings
-      knowledge.declination_sigma_rad};
+      knowledge.declination_sigma_rad, knowledge.gyro_misalignment_sigma_rad};
 }
 
 }  // namespace waverig::estimator

@@ -10,9 +10,13 @@ struct CompassKnowledge {
   double soft_iron_sigma = 0;  // per element of the matrix
   double tilt_sigma_rad = 0;   // constant over the record, per axis
   double declination_sigma_rad = 0;
+  // Of the gyroscope's axes against the accelerometer's. A body that follows the apparent vertical, a gondola
+  // or a buoy, shows its accelerometer no horizontal force: that of the waves is gravity times a tilt that
+  // the gyroscope alone has seen, and turns with its axes, one to one.
+  double gyro_misalignment_sigma_rad = 0;
 };
 struct DirectionBudget {
-  double hard_iron_rad = 0, soft_iron_rad = 0, tilt_rad = 0, declination_rad = 0;
+  double hard_iron_rad = 0, soft_iron_rad = 0, tilt_rad = 0, declination_rad = 0, gyro_rad = 0;
   double total_rad() const;
 };
 DirectionBudget direction_budget(const CompassKnowledge& knowledge, double dip_rad);

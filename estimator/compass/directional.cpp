@@ -127,6 +127,7 @@ DirectionalSea evaluate(const CrossSpectra& spectra, const DirectionalSettings& 
     all.h += band.h;
     all.first += band.first;
   }
+  sea.hm0_m = 4 * std::sqrt(all.z * spectra.step_Hz());
   sea.mean_direction_rad = in_turn(std::arg(all.first));
   sea.spread_rad = std::sqrt(2 * std::max(0.0, 1 - std::abs(all.first) / std::sqrt(all.z * all.h)));
   sea.check_factor = std::sqrt(all.h / all.z);
@@ -143,6 +144,7 @@ double DirectionalBand::spread_rad() const { return std::sqrt(2 * std::max(0.0, 
 
 void DirectionalSea::fill(SeaState& sea) const {
   if (segments == 0) return;
+  sea.hm0_m = hm0_m;
   sea.mean_direction_rad = mean_direction_rad;
   sea.spread_rad = spread_rad;
   sea.peak_direction_rad = peak_direction_rad;

@@ -59,6 +59,7 @@ struct DirectionalSea {
   std::vector<DirectionalBand> bands;    // lowest_Hz to highest_Hz
   int segments = 0;                      // that went into it; 0: nothing below is known
   int dropped_segments = 0;              // for gaps, or a compass that does not agree with itself
+  double hm0_m = kUnknown;               // 4 sqrt of the heave's variance, noise removed
   double mean_direction_rad = kUnknown;  // of all energy
   double spread_rad = kUnknown;          // of all energy
   double peak_Hz = kUnknown;
@@ -67,7 +68,7 @@ struct DirectionalSea {
   double heading_std_rad = kUnknown;     // scatter of the compass about its fit, per bin
   double field_norm_std = kUnknown;      // relative: a calibrated compass shows a constant norm
 
-  // Into the direction fields of a sea state, which stay unknown where segments == 0.
+  // Into Hm0 and the direction fields of a sea state, which stay unknown where segments == 0.
   void fill(SeaState& sea) const;
 };
 

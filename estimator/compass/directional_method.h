@@ -1,5 +1,5 @@
 // `directional`: where the waves of a record come from, by directional.h over the smoothed attitude. Gives a
-// sea state with direction, spread and check factor alone; nothing where the record carries no magnetic
+// sea state with Hm0, direction, spread and check factor; nothing where the record carries no magnetic
 // field.
 #pragma once
 #include "estimator/compass/directional.h"

@@ -47,8 +47,13 @@ void take_sea(Summary& summary, std::span<const estimator::SeaState> seas) {
   const auto longer = [](const estimator::SeaState& sea, const estimator::SeaState* than) {
     return than == nullptr || sea.duration_s > than->duration_s;
   };
+  // One with periods before one that came with a direction alone.
+  const auto fuller = [&](const estimator::SeaState& sea, const estimator::SeaState* than) {
+    const bool periods = std::isfinite(sea.tm02_s), its = than != nullptr && std::isfinite(than->tm02_s);
+    return periods == its ? longer(sea, than) : periods || than == nullptr;
+  };
   for (const estimator::SeaState& sea : seas) {
-    if (std::isfinite(sea.hm0_m) && longer(sea, longest)) longest = &sea;
+    if (std::isfinite(sea.hm0_m) && fuller(sea, longest)) longest = &sea;
     if (std::isfinite(sea.mean_direction_rad) && longer(sea, directed)) directed = &sea;
     summary.flags |= sea.flags;
   }

@@ -51,24 +51,59 @@ Panel rose_panel(std::string title, const std::vector<double>& directions_rad,
 
 std::optional<Figure> direction_figure(const evaluation::CampaignResults& results) {
   struct Seas {
-    std::vector<double> directions_rad, hm0_m;
+    std::vector<double> directions_rad, hm0_m, period_s, error_deg, spread_deg, true_spread_deg;
   };
   std::map<std::string, Seas> by_method;
   for (const evaluation::RunResult& run : results.runs) {
     for (const evaluation::JudgedSea& judged : run.seas) {
       const estimator::SeaState& sea = judged.sea;
       if (!std::isfinite(sea.mean_direction_rad)) continue;
-      by_method[run.method].directions_rad.push_back(sea.mean_direction_rad);
-      by_method[run.method].hm0_m.push_back(sea.hm0_m);
+      Seas& seas = by_method[run.method];
+      seas.directions_rad.push_back(sea.mean_direction_rad);
+      seas.hm0_m.push_back(sea.hm0_m);
+      seas.period_s.push_back(run.period_s);
+      seas.error_deg.push_back(judged.direction_error_rad() / kDegree);
+      seas.spread_deg.push_back(sea.spread_rad / kDegree);
+      seas.true_spread_deg.push_back(judged.direction.spread_rad / kDegree);
     }
   }
   if (by_method.empty()) return std::nullopt;
-  Figure figure{.title = "Directions the waves came from",
-                .subtitle = "share of sea states by mean direction, true north up",
-                .height_mm = 110};
+  Figure figure{
+      .title = "Directions the waves came from",
+      .subtitle = "share of sea states by mean direction, true north up; each run against its truth",
+      .height_mm = 110};
   figure.columns = static_cast<int>(std::min<std::size_t>(by_method.size(), 3));
   for (const auto& [method, seas] : by_method)
     figure.panels.push_back(rose_panel(method, seas.directions_rad, seas.hm0_m));
+
+  const bool judged = std::ranges::any_of(by_method, [](const auto& of) {
+    return std::ranges::any_of(of.second.error_deg, [](double e) { return std::isfinite(e); });
+  });
+  if (!judged) return figure;
+  const Axis period{.label = "Period", .unit = "s"};
+  Panel error{.title = "Told minus true", .x = period, .y = {.label = "Difference", .unit = "°"}};
+  Panel spread{.title = "Spread", .x = period, .y = {.label = "Spread", .unit = "°", .low = 0}};
+  int color = 0;
+  for (const auto& [method, seas] : by_method) {
+    error.marks.emplace_back(Points{.x = seas.period_s,
+                                    .y = seas.error_deg,
+                                    .name = method,
+                                    .look = {.color = color, .marker = Marker::kCircle}});
+    spread.marks.emplace_back(Points{.x = seas.period_s,
+                                     .y = seas.spread_deg,
+                                     .name = method,
+                                     .look = {.color = color, .marker = Marker::kCircle}});
+    spread.marks.emplace_back(Points{.x = seas.period_s,
+                                     .y = seas.true_spread_deg,
+                                     .name = color == 0 ? "truth" : "",
+                                     .look = {.color = kInk, .marker = Marker::kHollowCircle}});
+    ++color;
+  }
+  error.marks.emplace_back(Rule{.at = 2, .name = "limits of CDIP"});
+  error.marks.emplace_back(Rule{.at = -2});
+  figure.panels.push_back(std::move(error));
+  figure.panels.push_back(std::move(spread));
+  figure.columns = static_cast<int>(std::min<std::size_t>(figure.panels.size(), 3));
   return figure;
 }
 

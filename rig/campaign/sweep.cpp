@@ -124,10 +124,6 @@ namespace {
 
 bool tells_direction(const evaluation::CellResult& cell) { return std::isfinite(cell.sea.sea.spread_rad); }
 
-bool tells_direction_alone(const evaluation::CellResult& cell) {
-  return tells_direction(cell) && cell.statistics.waves == 0 && !std::isfinite(cell.sea.sea.hm0_m);
-}
-
 std::string shown_direction(double from_rad) {
   return std::isfinite(from_rad) ? fmt::format("{:.2f}", from_rad / kDegree) : "all round";
 }
@@ -156,7 +152,7 @@ std::string regular_table(const evaluation::CampaignResults& results) {
                                   "method", "waves", "mean cm", "error %", "std cm", "bound cm", "U(k=2)", "rmse cm");
   for (const auto& cell : results.cells) {
     const auto& s = cell.statistics;
-    if (tells_direction_alone(cell)) continue;
+    if (s.waves == 0 && tells_direction(cell)) continue;  // stands in the table of directions
     table += fmt::format("{:8.1f} {:9.1f}  {:<12} {:6} {:9.2f} {:8.2f} {:8.2f} {:9.2f} {:8.2f} {:7.2f}\n", cell.period_s,
                          cell.height_m / kCentimetre, cell.method, s.waves, s.mean_height_m / kCentimetre,
                          s.error_rate_percent, s.std_m / kCentimetre, s.bound_std_m / kCentimetre,
@@ -171,7 +167,6 @@ std::string sea_table(const evaluation::CampaignResults& results) {
       fmt::format("{:>5} {:>7}  {:<12} {:>12} {:>12} {:>9} {:>8} {:>12} {:>13}\n", "Tp s", "Hm0 cm", "method",
                   "heave rms cm", "% of Hm0", "gain", "lag s", "Hm0 error %", "Tm02 error %");
   for (const auto& cell : results.cells) {
-    if (tells_direction_alone(cell)) continue;
     table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:9.4f} {:8.3f} {:12.2f} {:13.2f}\n", cell.period_s,
                          cell.height_m / kCentimetre, cell.method, cell.heave_rmse_m / kCentimetre,
                          100 * cell.heave_rmse_m / cell.true_hm0_m, cell.heave_gain, cell.heave_lag_s,

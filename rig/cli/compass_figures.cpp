@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 namespace waverig::cli {
 namespace {
@@ -20,6 +21,7 @@ using render::Line;
 using render::Note;
 using render::Panel;
 using render::Rule;
+using render::Span;
 
 constexpr double kLargestBorder_of_g = 0.5;  // border_of_g() looks no further
 
@@ -118,6 +120,23 @@ Figure angle_figure(const TiltStudy& study, const AngleFigure& of) {
   return figure;
 }
 
+// Points of the sweep between which the two-axis module flags the sign of z, for the run that is drawn. An
+// empty range where it never does.
+std::pair<std::size_t, std::size_t> doubtful_sign(const TiltStudy& study) {
+  const estimator::TiltStudySettings& s = study.settings;
+  const estimator::TwoAxisSettings module{.tilt_sigma_rad = s.accel_error_sigma_mps2 / s.gravity_mps2,
+                                          .field_sigma = s.field_noise};
+  std::pair<std::size_t, std::size_t> range{study.tilt_rad.size(), 0};
+  for (std::size_t i = 0; i < study.tilt_rad.size(); ++i) {
+    const double tilt_rad = study.tilt_rad[i];
+    const Vector3d m_B = estimator::field_B(s.heading_rad[0], s.dip_rad, {tilt_rad, tilt_rad});
+    const estimator::Tilt found{study.example.computed[0][i], study.example.computed[1][i]};
+    if (!estimator::reconstruct_z(m_B.x(), m_B.y(), found, s.dip_rad, module).sign_doubtful) continue;
+    range = {std::min(range.first, i), std::max(range.second, i)};
+  }
+  return range;
+}
+
 Figure two_axis_figure(const TiltStudy& study) {
   const auto& example = study.example;
   const std::vector<double> tilt_deg = in_degrees(study.tilt_rad);
@@ -137,8 +156,12 @@ Figure two_axis_figure(const TiltStudy& study) {
   z.marks = {
       Line{.x = tilt_deg, .y = example.z_estimated, .name = "estimated"},
       Line{.x = tilt_deg, .y = example.z_true, .name = "true", .look = {.dash = render::Dash::kDashed}},
-      Note{.y = 0.86,
-           .text = "Where the tilt error turns the sign of eq. (23), z jumps to its mirror image"}};
+      Note{.x = 0.4,
+           .y = 0.38,
+           .text = "Where the tilt error turns the sign of eq. (23),\nz jumps to its mirror image"}};
+  if (const auto [first, last] = doubtful_sign(study); first <= last)
+    z.marks.insert(z.marks.begin(),
+                   Span{.from = tilt_deg[first], .to = tilt_deg[last], .name = "flagged: sign in doubt"});
   figure.panels = {dip, z};
   return figure;
 }

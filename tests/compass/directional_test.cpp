@@ -103,6 +103,7 @@ TEST(DirectionalAnalysis, CoefficientsOfARegularWaveAreThoseOfItsDirection) {
   EXPECT_NEAR(peak->b2, std::sin(2 * from), 1e-3);
   EXPECT_LT(off_deg(peak->direction_from_rad(), from), 0.1);
   EXPECT_NEAR(4 * std::sqrt(variance), 4 * std::sqrt(0.125), 0.02 * 4 * std::sqrt(0.125));
+  EXPECT_NEAR(sea.hm0_m, 4 * std::sqrt(0.125), 0.02 * 4 * std::sqrt(0.125));
 }
 
 TEST(DirectionalAnalysis, AddsTheDeclinationOnce) {
@@ -295,10 +296,11 @@ TEST(DirectionalAnalysis, RefusesSettingsThatLeaveNoBand) {
 }
 
 TEST(DirectionBudget, AddsItsContributions) {
-  const DirectionBudget budget = direction_budget({0.03, 0.04, 0, 0}, 0);
+  const DirectionBudget budget = direction_budget({0.03, 0.04, 0, 0, 0}, 0);
   EXPECT_NEAR(budget.total_rad(), 0.05, 1e-12);
-  EXPECT_NEAR(direction_budget({0, 0, 0.01, 0}, 45 * kDegree).total_rad(), 0.01, 1e-12);
-  EXPECT_NEAR(direction_budget({0.01, 0, 0, 0}, 60 * kDegree).total_rad(), 0.02, 1e-12);
+  EXPECT_NEAR(direction_budget({0, 0, 0.01, 0, 0}, 45 * kDegree).total_rad(), 0.01, 1e-12);
+  EXPECT_NEAR(direction_budget({0.01, 0, 0, 0, 0}, 60 * kDegree).total_rad(), 0.02, 1e-12);
+  EXPECT_NEAR(direction_budget({0, 0, 0, 0.03, 0.04}, 60 * kDegree).total_rad(), 0.05, 1e-12);
 }
 
 }  // namespace
