@@ -158,7 +158,7 @@ std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::Campa
   if (!run.truth.empty()) motion.emplace(run, "");
   if (motion) {
     tasks.insert(tasks.begin(),
-                 {out / "rig.png", [&](Canvas& canvas, const std::filesystem::path& path) {
+                 {out / (motion->on_sea() ? "buoy.png" : "rig.png"), [&](Canvas& canvas, const std::filesystem::path& path) {
                     const double shown_s = motion->begin_s() + 0.7 * (motion->end_s() - motion->begin_s());
                     save_rig_picture(*motion, shown_s, canvas, path, options.theme, options.provenance);
                   }});

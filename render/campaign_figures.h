@@ -28,11 +28,14 @@ struct FigureOptions {
 struct FigureInfo {
   std::string_view stem, group, caption;
 };
-inline constexpr std::array<FigureInfo, 18> kFigureOrder = {{
+inline constexpr std::array<FigureInfo, 19> kFigureOrder = {{
     {"rig", "The rig",
      "The rig in the run of the figures below: the arm turns, the gondola swings; the water is the wave that "
      "it "
-     "stands for. On a sea, the buoy: beside it the water is what came by before and comes by after."},
+     "stands for."},
+    {"buoy", "The buoy",
+     "The buoy in the run of the figures below; beside it the water is what came by before and comes by "
+     "after."},
     {"paper-table-2", "As in the paper",
      "Table 2 as a chart: what was published beside what each method gives, "
      "with the physical limit of "

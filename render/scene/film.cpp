@@ -97,16 +97,20 @@ Figure FilmFrames::traces(double time_s) const {
   tilt_panel.y.low = -1.4 * largest_deg;
   tilt_panel.y.high = 1.4 * largest_deg;
 
-  Panel force_panel = panel("Specific force, x and z + g", "m/s\u00B2", kAuto, kAuto);
+  Panel force_panel = panel("Specific force", "m/s\u00B2", kAuto, kAuto);
   double largest_mps2 = 0.05;
   for (std::size_t i = 0; i < run.imu.size(); i += 16)
     largest_mps2 = std::max(largest_mps2, std::abs(run.imu[i].f_B.z() + kStandardGravity));
   force_panel.y.low = -1.3 * largest_mps2;
   force_panel.y.high = 1.3 * largest_mps2;
-  add(force_panel, line_of(run.imu, start, from_s, time_s, [](const auto& s) { return s.f_B.x(); }), 2, 0.8);
-  add(force_panel,
-      line_of(run.imu, start, from_s, time_s, [](const auto& s) { return s.f_B.z() + kStandardGravity; }), 0,
-      0.8);
+  force_panel.legend = Legend::kAbove;
+  Line forward = line_of(run.imu, start, from_s, time_s, [](const auto& s) { return s.f_B.x(); });
+  Line down =
+      line_of(run.imu, start, from_s, time_s, [](const auto& s) { return s.f_B.z() + kStandardGravity; });
+  forward.name = "x (forward)";
+  down.name = "z (down) + g";
+  add(force_panel, std::move(forward), 2, 0.8);
+  add(force_panel, std::move(down), 0, 0.8);
   figure.panels = {std::move(heave_panel), std::move(tilt_panel), std::move(force_panel)};
   return figure;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lcmtypes/error.h"
+#include "render/figures/run_time.h"
 
 namespace waverig::render {
 namespace {
@@ -67,7 +68,7 @@ std::string nearest_method(const evaluation::RunRecord& run) {
 }
 
 RigMotion::RigMotion(const evaluation::RunRecord& run, const std::string& method)
-    : run_(run), method_(method) {
+    : run_(run), method_(method), on_sea_(is_on_sea(run)) {
   if (run.truth.empty())
     throw UserError("run " + run.run + ": it holds no truth of the rig, so there is nothing to show");
   if (method_.empty()) method_ = nearest_method(run);

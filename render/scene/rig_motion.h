@@ -29,7 +29,8 @@ class RigMotion {
   const evaluation::RunRecord& run() const { return run_; }
   double heave_offset_m() const { return mean_heave_m_; }  // of the estimate from the truth: it is taken off
   double radius_m() const { return radius_m_; }
-  double begin_s() const;  // of the steady part, or of the record where nothing is steady
+  bool on_sea() const { return on_sea_; }  // a buoy on a sea instead of the arm's gondola
+  double begin_s() const;                  // of the steady part, or of the record where nothing is steady
   double end_s() const;
 
  private:
@@ -41,6 +42,7 @@ class RigMotion {
   double mean_heave_m_ = 0;  // of the estimate over the steady part, less that of the truth
   double azimuth_rad_ = 0;
   double radius_m_ = 0;
+  bool on_sea_ = false;
 };
 
 // Nearest method by rms of heave against the truth, its mean removed, over the

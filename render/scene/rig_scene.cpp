@@ -164,13 +164,81 @@ void RigScene::prepare_fonts(float text_px) {
 }
 
 void RigScene::build(const RigMotion& motion, const RigInstant& at) {
+  solid_.clear();
+  clear_.clear();
+  if (motion.on_sea())
+    build_buoy(motion, at);
+  else
+    build_rig(motion, at);
+}
+
+// The floor, tiled by half metres, and what stands on it keeps from the lamp.
+void RigScene::add_floor(double reach, double floor_z) {
   const bool dark = settings_.theme == Theme::kDark;
+  const Color floor = dark ? rgb(0x39424D) : rgb(0xDDE2E7),
+              joint = mixed(floor, rgb(0x000000), dark ? 0.35F : 0.12F);
+  const Mesh things = solid_;
+  Isometry3d ground = Isometry3d::Identity();
+  ground.translation() = Vector3d(0, 0, floor_z - 0.01);
+  solid_.add_box(ground, {16 * reach, 16 * reach, 0.02}, floor);
+  for (double at_m = -8 * reach; at_m < 8 * reach; at_m += 0.5) {
+    ground.translation() = Vector3d(at_m, 0, floor_z);
+    solid_.add_box(ground, {0.008, 16 * reach, 0.002}, joint);
+    ground.translation() = Vector3d(0, at_m, floor_z);
+    solid_.add_box(ground, {16 * reach, 0.008, 0.002}, joint);
+  }
+  solid_.add_shadow(things, kLamp, floor_z + 0.004, mixed(floor, rgb(0x000000), 0.28F));
+}
+
+// surface: rows of `columns` points, the nearest row first; its front goes down to the floor.
+void RigScene::add_water(const std::vector<Vector3d>& surface, std::size_t columns, double floor_z) {
+  const bool dark = settings_.theme == Theme::kDark;
+  std::vector<Vector3d> front;
+  for (std::size_t column = 0; column < columns; ++column)
+    front.emplace_back(surface[column].x(), surface[column].y(), floor_z);
+  front.insert(front.end(), surface.begin(), surface.begin() + static_cast<std::ptrdiff_t>(columns));
+  clear_.add_sheet(surface, columns, dark ? rgb(0x2A7FB8, 0.80F) : rgb(0x3F97D0, 0.80F));
+  clear_.add_sheet(front, columns, dark ? rgb(0x124A70, 0.82F) : rgb(0x2E7DB3, 0.72F));
+}
+
+// The water passes through the buoy: beside it stands what came by before and what comes by after, a period
+// as long as a wave of the rig's.
+void RigScene::build_buoy(const RigMotion& motion, const RigInstant& at) {
+  const double r = motion.radius_m(), reach = r + 0.45, floor_z = -(2.2 * r + 0.75), size = 0.16 * reach;
+  const auto add_hull = [&](Mesh& mesh, const Isometry3d& pose, double grown, Color hull, Color mast) {
+    const auto place = [&](double up) { return Vector3d(pose * Vector3d(0, 0, up * size)); };
+    mesh.add_rod(place(-0.7), place(0.7), 1.1 * grown * size, hull);
+    mesh.add_rod(place(0.7), place(2.6), 0.16 * grown * size, mast);
+    mesh.add_rod(place(2.6), place(2.9), 0.34 * grown * size, mast);
+  };
+  add_hull(solid_, gondola_pose(at.sensor_m, at.q_SB), 1, rgb(0xF2B705), rgb(0x5C6773));
+  add_floor(reach, floor_z);
+  if (at.estimated) {
+    const Vector3d shift(0, 0, at.estimated_heave_m - at.sensor_m.z());
+    const Color ghost = with_alpha(palette(settings_.theme, 1), 0.30F);
+    add_hull(clear_, gondola_pose(at.sensor_m + shift, at.estimated_q_SB), 1.08, ghost, ghost);
+  }
+  constexpr std::size_t kColumns = 160, kRows = 12;
+  const double half_width = 5 * reach, near_y = -0.5 * reach, far_y = 2.2 * reach;
+  const double seconds_per_m = 0.55 / std::max(r, 0.12) * motion.run().period_s / (2 * std::numbers::pi);
+  std::array<double, kColumns> x{}, z{};
+  for (std::size_t column = 0; column < kColumns; ++column) {
+    x[column] = -half_width + 2 * half_width * static_cast<double>(column) / (kColumns - 1);
+    z[column] = motion.at(at.time_s + seconds_per_m * (x[column] - at.sensor_m.x())).sensor_m.z();
+  }
+  std::vector<Vector3d> surface;
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const double y = near_y + (far_y - near_y) * static_cast<double>(row) / (kRows - 1);
+    for (std::size_t column = 0; column < kColumns; ++column) surface.emplace_back(x[column], y, z[column]);
+  }
+  add_water(surface, kColumns, floor_z);
+}
+
+void RigScene::build_rig(const RigMotion& motion, const RigInstant& at) {
   const Color steel = rgb(0x9AA5B1), frame = rgb(0x5C6773), arm = rgb(0xD9822B), gondola = rgb(0xE9EDF2),
               sensor = rgb(0x0B6E4F);
   const double r = motion.radius_m();
   const double floor_z = -(r + 0.75), depth_y = 0.34;
-  solid_.clear();
-  clear_.clear();
 
   // 1. The stand: two A-frames behind the arm's plane, and the shaft between them and the arm.
   for (const double y : {depth_y, depth_y + 0.28}) {
@@ -219,28 +287,16 @@ void RigScene::build(const RigMotion& motion, const RigInstant& at) {
                    with_alpha(palette(settings_.theme, 1), 0.30F));
   }
 
-  // 5. The floor, tiled by half metres, and what stands on it keeps from the lamp.
+  // 5. The floor.
   const double reach = r + 0.45;
-  const Color floor = dark ? rgb(0x39424D) : rgb(0xDDE2E7),
-              joint = mixed(floor, rgb(0x000000), dark ? 0.35F : 0.12F);
-  const Mesh things = solid_;
-  Isometry3d ground = Isometry3d::Identity();
-  ground.translation() = Vector3d(0, 0, floor_z - 0.01);
-  solid_.add_box(ground, {16 * reach, 16 * reach, 0.02}, floor);
-  for (double at_m = -8 * reach; at_m < 8 * reach; at_m += 0.5) {
-    ground.translation() = Vector3d(at_m, 0, floor_z);
-    solid_.add_box(ground, {0.008, 16 * reach, 0.002}, joint);
-    ground.translation() = Vector3d(0, at_m, floor_z);
-    solid_.add_box(ground, {16 * reach, 0.008, 0.002}, joint);
-  }
-  solid_.add_shadow(things, kLamp, floor_z + 0.004, mixed(floor, rgb(0x000000), 0.28F));
+  add_floor(reach, floor_z);
 
   // 6. The water in a flume behind: the trochoidal wave (Gerstner 1804) whose particle the gondola is, as
   // high as true.
   constexpr std::size_t kColumns = 120, kRows = 12;
   const double k = 0.55 / std::max(r, 0.12), level = -kHanger - 0.5 * kGondolaHeight;
   const double half_width = 5 * reach, near_y = depth_y + 0.62, far_y = near_y + 1.6 * reach;
-  std::vector<Vector3d> surface, front;
+  std::vector<Vector3d> surface;
   for (std::size_t row = 0; row < kRows; ++row) {
     const double y = near_y + (far_y - near_y) * static_cast<double>(row) / (kRows - 1);
     for (std::size_t column = 0; column < kColumns; ++column) {
@@ -249,11 +305,7 @@ void RigScene::build(const RigMotion& motion, const RigInstant& at) {
       surface.emplace_back(x0 + r * std::cos(phase), y, level + r * std::sin(phase));
     }
   }
-  for (std::size_t column = 0; column < kColumns; ++column)
-    front.emplace_back(surface[column].x(), near_y, floor_z);
-  front.insert(front.end(), surface.begin(), surface.begin() + kColumns);
-  clear_.add_sheet(surface, kColumns, dark ? rgb(0x2A7FB8, 0.80F) : rgb(0x3F97D0, 0.80F));
-  clear_.add_sheet(front, kColumns, dark ? rgb(0x124A70, 0.82F) : rgb(0x2E7DB3, 0.72F));
+  add_water(surface, kColumns, floor_z);
 }
 
 void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const RenderTarget& target,

@@ -4,7 +4,7 @@
 // In deep water a particle of the surface runs on a circle (Gerstner 1804): the
 // turning arm carries the gondola as such a particle, so the drawn water is the
 // trochoidal wave whose particle it is. Its length is chosen for the picture; a
-// wave of 12 s would be 225 m long.
+// wave of 12 s would be 225 m long. A run on a sea shows the buoy instead.
 #pragma once
 #include <memory>
 
@@ -37,6 +37,10 @@ class RigScene {
  private:
   struct Buffers;
   void build(const RigMotion& motion, const RigInstant& instant);
+  void build_rig(const RigMotion& motion, const RigInstant& instant);
+  void build_buoy(const RigMotion& motion, const RigInstant& instant);
+  void add_floor(double reach_m, double floor_m);
+  void add_water(const std::vector<Eigen::Vector3d>& surface, std::size_t columns, double floor_m);
   void draw_labels(const RigMotion& motion, const RigInstant& instant, const RenderTarget& target,
                    const Rect& area, float text_px);
 

@@ -11,7 +11,7 @@ namespace waverig::render {
 struct VideoSettings {
   int width_px = 1280, height_px = 720;  // both even
   int frames_per_s = 30;
-  int quality = 21;            // x264's constant rate factor: smaller is finer and larger
+  int quality = 21;                // x264's constant rate factor: smaller is finer and larger
   std::string title{}, comment{};  // into the file's metadata
 };
 

@@ -70,6 +70,36 @@ TEST(RigScene, ShowsArmAndWaterAndMovesWithTheRun) {
   EXPECT_GT(water, 5000U);
 }
 
+TEST(RigScene, ShowsABuoyInTheWaterWhereThereIsNoArm) {
+  const evaluation::RunRecord arm = test::example_run(), sea = test::example_sea_run();
+  EXPECT_FALSE(RigMotion(arm, "").on_sea());
+  const RigMotion motion(sea, "");
+  EXPECT_TRUE(motion.on_sea());
+  Canvas canvas;
+  FilmFrames frames(canvas, motion, {.width_px = 640, .height_px = 360, .theme = Theme::kPrint});
+  // The middle of the buoy's colour stands as high as the heave.
+  const auto row_of = [&](double time_s) {
+    const Image& image = frames.at(time_s);
+    double rows = 0, yellow = 0;
+    for (int y = 0; y < image.height_px; ++y) {
+      for (int x = 0; x < image.width_px * 58 / 100; ++x) {
+        const Color p = test::pixel(image, x, y);
+        if (!(p.r > 0.35F && p.r > 1.1F * p.g && p.g > 1.5F * p.b)) continue;
+        rows += y;
+        ++yellow;
+      }
+    }
+    EXPECT_GT(yellow, 100) << time_s;
+    return rows / yellow;
+  };
+  double highest_s = motion.begin_s(), lowest_s = highest_s;
+  for (double t = motion.begin_s(); t < motion.begin_s() + sea.period_s; t += 0.1) {
+    if (motion.at(t).sensor_m.z() > motion.at(highest_s).sensor_m.z()) highest_s = t;
+    if (motion.at(t).sensor_m.z() < motion.at(lowest_s).sensor_m.z()) lowest_s = t;
+  }
+  EXPECT_LT(row_of(highest_s) + 20, row_of(lowest_s));
+}
+
 TEST(RigScene, IsBitIdenticalOnAnotherCanvas) {
   const evaluation::RunRecord run = test::example_run();
   const RigMotion motion(run, "");
