@@ -371,7 +371,9 @@ void RigScene::draw_labels(const RigMotion& motion, const RigInstant& at, const 
   };
   canvas_.draw_over(target, [&](Painter& painter) {
     // A scale of heights beside the rig, with truth and estimate on it.
-    const double r = motion.radius_m(), x = 1.55 * (r + 0.3), low = -r, high = r;
+    const double r = motion.radius_m(), low = -r, high = r, gap = 0.08 * (r + 0.3);
+    double x = 1.55 * (r + 0.3);
+    while (x > 1.1 * r && on_page({x + gap, 0, high}).x + 4.5F * text_px > area.right) x *= 0.97;
     const Color truth = colors.ink, estimate = palette(settings_.theme, 1);
     const auto line = [&](const Vector3d& a, const Vector3d& b, Color color, float width) {
       painter.stroke(std::array{on_page(a), on_page(b)}, color, width);
@@ -381,7 +383,7 @@ void RigScene::draw_labels(const RigMotion& motion, const RigInstant& at, const 
     const double step = nice_step(high - low, 4);
     for (double z = std::ceil(low / step - 1e-9) * step; z <= high + 1e-9; z += step) {
       line({x, 0, z}, {x + 0.05 * (r + 0.3), 0, z}, colors.faint_ink, thin);
-      const Vec2 p = on_page({x + 0.08 * (r + 0.3), 0, z});
+      const Vec2 p = on_page({x + gap, 0, z});
       painter.text(p, number_text(100 * z, 0) + (z + step > high + 1e-9 ? " cm" : ""),
                    {.size_px = text_px, .color = colors.faint_ink, .v = VAlign::kMiddle});
     }
