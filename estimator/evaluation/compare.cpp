@@ -90,6 +90,12 @@ std::vector<CellComparison> compare_cells(std::span<const CellResult> baseline,
   return result;
 }
 
+bool any_common(std::span<const CellComparison> cells) {
+  return std::any_of(cells.begin(), cells.end(), [](const CellComparison& c) {
+    return c.verdict != Verdict::kOnlyInBaseline && c.verdict != Verdict::kOnlyInCandidate;
+  });
+}
+
 bool any_worse(std::span<const CellComparison> cells) {
   return std::any_of(cells.begin(), cells.end(),
                      [](const CellComparison& c) { return c.verdict == Verdict::kWorse; });

@@ -39,6 +39,7 @@ struct CellComparison {
 std::vector<CellComparison> compare_cells(std::span<const CellResult> baseline,
                                           std::span<const CellResult> candidate);
 
+bool any_common(std::span<const CellComparison> cells);  // in both campaigns
 bool any_worse(std::span<const CellComparison> cells);
 const char* name_of(Verdict verdict);
 std::string comparison_csv(std::span<const CellComparison> cells);

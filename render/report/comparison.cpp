@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "estimator/evaluation/compare.h"
+#include "lcmtypes/error.h"
 #include "motion/kinematics/frames.h"
 #include "render/campaign_figures.h"
 #include "render/report/html.h"
@@ -58,6 +59,10 @@ std::string comparison_html(const evaluation::CampaignResults& baseline, const f
                             const fs::path& candidate_directory) {
   const std::vector<evaluation::CellComparison> cells =
       evaluation::compare_cells(baseline.cells, candidate.cells);
+  if (!evaluation::any_common(cells))
+    throw UserError(
+        fmt::format("{} and {}: no period, height and method in common; expected two campaigns of one kind",
+                    baseline_directory.string(), candidate_directory.string()));
   HtmlTable table(
       "Error: of the mean height against the true mean, cm. Std: "
       "of single waves, cm; on irregular seas the rms of their errors. A difference counts "

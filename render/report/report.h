@@ -23,7 +23,8 @@ std::vector<MethodSummary> summaries_of(const evaluation::CampaignResults& resul
 // is broken.
 std::string report_html(const evaluation::CampaignResults& results, const std::filesystem::path& directory);
 
-// Two campaigns side by side: better, worse, or not significant, cell by cell.
+// Two campaigns side by side: better, worse, or not significant, cell by cell. Throws UserError where they have no
+// cell in common.
 std::string comparison_html(const evaluation::CampaignResults& baseline,
                             const std::filesystem::path& baseline_directory,
                             const evaluation::CampaignResults& candidate,

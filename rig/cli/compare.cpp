@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -20,14 +19,10 @@ struct CompareArguments {
 };
 
 int compare(const CompareArguments& arguments) {
-  using evaluation::Verdict;
   const auto baseline = evaluation::read_results(arguments.baseline);
   const auto candidate = evaluation::read_results(arguments.candidate);
   const auto cells = evaluation::compare_cells(baseline.cells, candidate.cells);
-  const bool common = std::any_of(cells.begin(), cells.end(), [](const auto& c) {
-    return c.verdict != Verdict::kOnlyInBaseline && c.verdict != Verdict::kOnlyInCandidate;
-  });
-  if (!common)
+  if (!evaluation::any_common(cells))
     throw UserError(
         fmt::format("{} and {}: no period, height and method in common; expected two campaigns of one kind",
                     arguments.baseline, arguments.candidate));

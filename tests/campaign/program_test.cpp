@@ -107,6 +107,30 @@ TEST(Program, SweepWritesEverythingAResultsDirectoryHolds) {
   EXPECT_EQ(bytes_of(temporary / "out/results.csv"), csv);
 }
 
+TEST(Program, ReportsCampaignsOfWavesAndOfSeasAndHoldsThemSideBySide) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  temporary.write("sea.toml",
+                  "name = \"sea\"\nmethods = [\"smoothed\"]\n[sweep]\nmotion = \"jonswap\"\nperiods_s = [6.0]\n"
+                  "heights_cm = [100.0]\nduration_s = 120.0\nrepeats = 1\n");
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out waves").status, 0);
+  const Outcome sea = run(temporary, "sweep sea.toml --out sea");
+  ASSERT_EQ(sea.status, 0) << sea.err;
+  EXPECT_TRUE(std::filesystem::exists(temporary / "sea/figures/sea-states.png"));
+  EXPECT_NE(bytes_of(temporary / "sea/report.html").find("% of Hm0"), std::string::npos);
+  EXPECT_EQ(bytes_of(temporary / "waves/report.html").find("% of Hm0"), std::string::npos);
+  for (const std::string campaign : {"waves", "sea"}) {
+    const Outcome compared = run(temporary, "report " + campaign + " --compare " + campaign + " --out pair.html");
+    ASSERT_EQ(compared.status, 0) << compared.err;
+    EXPECT_EQ(compared.out, "pair.html\n");
+    EXPECT_NE(bytes_of(temporary / "pair.html").find("not significant"), std::string::npos) << campaign;
+  }
+  const Outcome strangers = run(temporary, "report waves --compare sea --out none.html");
+  EXPECT_EQ(strangers.status, 2);
+  EXPECT_NE(strangers.err.find("in common"), std::string::npos) << strangers.err;
+  EXPECT_FALSE(std::filesystem::exists(temporary / "none.html"));
+}
+
 TEST(Program, ResultsDirectoryAloneReproducesItself) {
   const TemporaryDirectory temporary;
   temporary.write("tiny.toml", kTiny);
