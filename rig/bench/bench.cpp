@@ -79,6 +79,7 @@ BenchResult run_bench(const Sequence& given, const BenchOptions& options) {
   RunnerHooks hooks;
   hooks.progress = options.progress;
   hooks.prompt = options.prompt;
+  hooks.trace = options.trace;
   hooks.clear_stop = options.clear_stop;
   if (laboratory) hooks.world_snapshot = [&] { return laboratory->snapshot(); };
   Runner runner(sequence, reactor, store, std::move(hooks));

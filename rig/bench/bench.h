@@ -22,6 +22,7 @@ struct BenchOptions {
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const Progress&)> progress;
   std::function<bool(const PlannedStep&)> prompt;
+  std::function<void(const TraceRow&)> trace;
   std::function<void()> clear_stop;
 };
 

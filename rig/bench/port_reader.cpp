@@ -30,6 +30,13 @@ std::optional<std::size_t> optional_field(const FrameLayout& layout, const std::
 
 }  // namespace
 
+std::int64_t total_step(const FrameLayout& layout, const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to,
+                        std::size_t field) {
+  const int bits = layout.fields[field].bits;
+  const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  return static_cast<std::int64_t>((static_cast<std::uint64_t>(to[field]) - static_cast<std::uint64_t>(from[field])) & mask);
+}
+
 PortReader::PortReader(Reactor& reactor, const Port& port, const UnitDescription& unit)
     : reactor_(reactor),
       port_(port),
@@ -70,12 +77,6 @@ void PortReader::read() {
     last_ = frame->raw;
     if (on_frame) on_frame(last_);
   }
-}
-
-std::int64_t PortReader::step(const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to, std::size_t field) const {
-  const int bits = port_.layout.fields[field].bits;
-  const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-  return static_cast<std::int64_t>((static_cast<std::uint64_t>(to[field]) - static_cast<std::uint64_t>(from[field])) & mask);
 }
 
 double PortReader::temperature(const std::vector<std::int64_t>& raw) const {

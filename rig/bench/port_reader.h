@@ -15,6 +15,10 @@
 
 namespace waverig::rig::bench {
 
+// How far a running total has come from one frame to another; it may have wrapped once.
+std::int64_t total_step(const FrameLayout& layout, const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to,
+                        std::size_t field);
+
 class PortReader {
  public:
   // Throws UserError where the port cannot be opened.
@@ -56,7 +60,9 @@ class PortReader {
   void read();
   void add(const std::vector<std::int64_t>& raw);
   void start(const std::vector<std::int64_t>& raw);
-  std::int64_t step(const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to, std::size_t field) const;
+  std::int64_t step(const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to, std::size_t field) const {
+    return total_step(port_.layout, from, to, field);
+  }
   double temperature(const std::vector<std::int64_t>& raw) const;
   void end_second(const std::vector<std::int64_t>& raw);
 

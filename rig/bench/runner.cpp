@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lcmtypes/error.h"
 
@@ -51,6 +52,7 @@ std::string Runner::run(bool resume) {
   if (resume) look_back();
   try {
     store_.set_instruments(instruments_.identify());
+    follow_ports();
     if (resume) go_on();
     store_.set_outcome("running");
     for (; next_ < sequence_.plan.size() && sequence_.plan[next_].section != Section::kTeardown; ++next_) carry_out(next_);
@@ -65,6 +67,19 @@ std::string Runner::run(bool resume) {
   return outcome;
 }
 
+void Runner::follow_ports() {
+  for (auto& [name, port] : instruments_.ports()) {
+    std::int64_t& last = traced_[name];
+    port->on_frame = [this, &name = name, &last](const std::vector<std::int64_t>& raw) {
+      const std::int64_t period = reactor_.now() / microseconds(kTracePeriod_s);
+      if (period == last) return;
+      last = period;
+      trace_.push_back({name, reactor_.now(), raw});
+      if (hooks_.trace) hooks_.trace(trace_.back());
+    };
+  }
+}
+
 void Runner::look_back() {
   for (const StepRow& row : store_.steps()) {
     attempts_[row.index] = std::max(attempts_[row.index], row.attempt);
@@ -72,6 +87,7 @@ void Runner::look_back() {
     if (row.outcome == StepOutcome::kDone || row.outcome == StepOutcome::kAccepted)
       next_ = std::max(next_, static_cast<std::size_t>(row.index) + 1);
   }
+  for (const TraceRow& t : store_.trace()) traced_[t.port] = t.utime / microseconds(kTracePeriod_s);
   for (const auto& [name, frame] : store_.resume_state().last_frames)
     if (const auto port = instruments_.ports().find(name); port != instruments_.ports().end()) port->second->set_last_frame(frame);
 }
@@ -151,7 +167,7 @@ Runner::Measured Runner::attempt(const PlannedStep& step) {
       reactor_.sleep_until(reactor_.now() + microseconds(step.duration_s));
       break;
     case Verb::kUntil:
-      wait_until(step, false);
+      measured.value = wait_until(step, false);
       break;
     case Verb::kRecord:
       return record(step);
@@ -164,17 +180,17 @@ Runner::Measured Runner::attempt(const PlannedStep& step) {
 }
 
 // recheck: after an interruption. If it still holds at the first look nothing has moved, and the run goes on at once.
-void Runner::wait_until(const PlannedStep& step, bool recheck) {
+double Runner::wait_until(const PlannedStep& step, bool recheck) {
   const std::int64_t deadline = reactor_.now() + microseconds(step.timeout_s);
   std::int64_t holds_since = -1;
   for (bool first = true;; first = false) {
     const double value = read(step);
     const std::int64_t now = reactor_.now();
     const bool holds = std::abs(value - step.near_si) <= step.within_si;
-    if (recheck && first && holds) return;
+    if (recheck && first && holds) return value;
     if (!holds) holds_since = -1;
     if (holds && holds_since < 0) holds_since = now;
-    if (holds && now - holds_since >= microseconds(step.duration_s)) return;
+    if (holds && now - holds_since >= microseconds(step.duration_s)) return value;
     if (now >= deadline)
       throw InstrumentError(FaultKind::kTimeout, step.instrument,
                             fmt::format("{} = {:.4g} after {}: expected {:g} within {:g} for {}", step.name, value,
@@ -264,7 +280,7 @@ void Runner::commit(const PlannedStep& step, StepOutcome outcome, const std::str
   if (hooks_.world_snapshot) state.world = hooks_.world_snapshot();
   for (const auto& [name, port] : instruments_.ports())
     if (!port->last_frame().empty()) state.last_frames[name] = port->last_frame();
-  store_.commit(row, measured.recordings, state);
+  store_.commit(row, measured.recordings, std::exchange(trace_, {}), state);
 }
 
 void Runner::tear_down(bool aborted) {

@@ -24,9 +24,12 @@ struct Progress {
 struct RunnerHooks {
   std::function<void(const Progress&)> progress;
   std::function<bool(const PlannedStep&)> prompt;      // true: go on; without it the unattended default holds
+  std::function<void(const TraceRow&)> trace;          // every kTracePeriod_s of each port, as it comes
   std::function<std::string()> world_snapshot;         // of a simulated laboratory, kept with each step
   std::function<void()> clear_stop;                    // after an interruption: the tear-down may wait again
 };
+
+inline constexpr double kTracePeriod_s = 20;
 
 class Runner {
  public:
@@ -45,11 +48,12 @@ class Runner {
     std::string violation;                  // of a limit
   };
 
+  void follow_ports();                      // keeps the trace
   void look_back();                         // what is done already
   void go_on();                             // tells again what sets state, as far as the run had come
   void carry_out(std::size_t index);        // with its retries; throws where the rule is to end
   Measured attempt(const PlannedStep& step);
-  void wait_until(const PlannedStep& step, bool recheck);
+  double wait_until(const PlannedStep& step, bool recheck);   // what it read last
   Measured record(const PlannedStep& step);
   void judge(const PlannedStep& step, double value, Measured& measured) const;
   void judge(const PlannedStep& step, const RecordingRow& row, Measured& measured) const;
@@ -66,6 +70,8 @@ class Runner {
   std::size_t next_ = 0;
   std::vector<double> remaining_s_;         // from each step on
   std::map<int, int> attempts_;             // so far, by step
+  std::map<std::string, std::int64_t> traced_;   // by port: the last period that has its frame
+  std::vector<TraceRow> trace_;             // since the last commit
   int failures_ = 0;
   std::string alarm_;
 };

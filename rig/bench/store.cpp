@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/error.h"
@@ -11,7 +12,7 @@ namespace waverig::rig::bench {
 namespace {
 
 using Json = nlohmann::json;
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 
 constexpr const char* kSchema = R"(
 CREATE TABLE run(title TEXT, procedure TEXT, version TEXT, files TEXT, instruments TEXT, started INTEGER,
@@ -22,6 +23,7 @@ CREATE TABLE step(sequence INTEGER PRIMARY KEY AUTOINCREMENT, idx INTEGER, attem
 CREATE TABLE recording(idx INTEGER, attempt INTEGER, port TEXT, tags TEXT, start INTEGER, ticks INTEGER, clock INTEGER,
                        reference INTEGER, frames INTEGER, lost INTEGER, broken INTEGER, temperature REAL,
                        temperature_span REAL, channels TEXT, data BLOB, PRIMARY KEY(idx, attempt, port));
+CREATE TABLE trace(port TEXT, utime INTEGER, raw BLOB, PRIMARY KEY(port, utime));
 CREATE TABLE state(id INTEGER PRIMARY KEY CHECK(id = 0), utime INTEGER, world BLOB, frames TEXT);
 )";
 
@@ -147,7 +149,8 @@ Store Store::open(const std::filesystem::path& file) {
 Store::Store(Store&& other) noexcept : database_(std::exchange(other.database_, nullptr)) {}
 Store::~Store() { sqlite3_close(database_); }
 
-void Store::commit(const StepRow& s, const std::vector<RecordingRow>& recordings, const ResumeState& state) {
+void Store::commit(const StepRow& s, const std::vector<RecordingRow>& recordings, const std::vector<TraceRow>& trace,
+                   const ResumeState& state) {
   execute("BEGIN IMMEDIATE;");
   try {
     Statement step(database_, "INSERT INTO step(idx,attempt,section,path,what,place,outcome,message,started,ended,value,limits)"
@@ -161,6 +164,9 @@ void Store::commit(const StepRow& s, const std::vector<RecordingRow>& recordings
           .bind(r.ticks).bind(r.clock).bind(r.reference).bind(r.frames).bind(r.lost).bind(r.broken).bind(r.temperature)
           .bind(r.temperature_span).bind(json_of(r.channels)).bind_blob(r.data.data(), r.data.size()).step();
     }
+    for (const TraceRow& t : trace)
+      Statement(database_, "INSERT OR REPLACE INTO trace VALUES(?,?,?)").bind(t.port).bind(t.utime)
+          .bind_blob(t.raw.data(), t.raw.size() * sizeof t.raw.front()).step();
     Statement(database_, "INSERT OR REPLACE INTO state VALUES(0,?,?,?)").bind(state.utime)
         .bind_blob(state.world.data(), state.world.size()).bind(Json(state.last_frames).dump()).step();
     execute("COMMIT;");
@@ -222,6 +228,20 @@ std::vector<StepRow> Store::steps() const {
     if (!row.null()) s.value = row.real();
     else row.skip();
     s.limits = row.text();
+  }
+  return rows;
+}
+
+std::vector<TraceRow> Store::trace() const {
+  std::vector<TraceRow> rows;
+  Statement row(database_, "SELECT port,utime,raw FROM trace ORDER BY utime,port");
+  while (row.step()) {
+    TraceRow& t = rows.emplace_back();
+    t.port = row.text();
+    t.utime = row.integer();
+    const std::string bytes = row.text();
+    t.raw.resize(bytes.size() / sizeof t.raw.front());
+    std::memcpy(t.raw.data(), bytes.data(), t.raw.size() * sizeof t.raw.front());
   }
   return rows;
 }

@@ -52,6 +52,13 @@ struct RecordingRow {
   std::vector<std::uint8_t> data;                   // kept frames, compressed; see frame_data.h
 };
 
+// A port's frame now and then, raw: what the traces over a whole run are drawn from.
+struct TraceRow {
+  std::string port;
+  std::int64_t utime = 0;
+  std::vector<std::int64_t> raw;
+};
+
 // Enough to go on: the time, the simulated laboratory (empty on a real bench), the last frame of each port.
 struct ResumeState {
   std::int64_t utime = 0;
@@ -67,13 +74,15 @@ class Store {
   Store(Store&&) noexcept;
   ~Store();
 
-  void commit(const StepRow& step, const std::vector<RecordingRow>& recordings, const ResumeState& state);
+  void commit(const StepRow& step, const std::vector<RecordingRow>& recordings, const std::vector<TraceRow>& trace,
+              const ResumeState& state);
   void set_instruments(const std::map<std::string, std::string>& instruments);
   void set_outcome(const std::string& outcome);
 
   RunInfo info() const;
   ResumeState resume_state() const;
   std::vector<StepRow> steps() const;               // in the order of execution
+  std::vector<TraceRow> trace() const;              // in the order of time
   // with_data: also the kept frames.
   std::vector<RecordingRow> recordings(bool with_data = false) const;
 

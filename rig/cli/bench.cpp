@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "estimator/evaluation/atomic_file.h"
 #include "lcmtypes/error.h"
-#include "rig/bench/results.h"
+#include "rig/bench/report/live_view.h"
+#include "rig/bench/report/report.h"
 #include "rig/cli/bench_terminal.h"
 #include "rig/cli/commands.h"
 #include "rig/version.h"
@@ -21,10 +23,20 @@ namespace {
 namespace fs = std::filesystem;
 using namespace rig::bench;
 
+constexpr std::chrono::milliseconds kLiveRefresh{2000};
+
 struct BenchArguments {
   std::string sequence, out, simulation, scale_factors;
   bool simulate = false, dry_run = false, resume = false, unattended = false;
 };
+
+std::string command_line(const BenchArguments& a) {
+  std::string text = "waverig bench " + a.sequence;
+  if (a.simulate) text += " --simulate";
+  if (!a.simulation.empty()) text += " --simulation " + a.simulation;
+  if (!a.scale_factors.empty()) text += " --scale-factors " + a.scale_factors;
+  return text + " --out " + a.out;
+}
 
 BenchOptions options_for(const BenchArguments& arguments) {
   if (arguments.out.empty()) throw UserError("--out is missing: expected the run's directory, or --dry-run");
@@ -45,49 +57,76 @@ std::string table_of(const std::vector<Verdict>& verdicts) {
   return text;
 }
 
+// The scale factors that a bias run goes by are kept with it: a run that is gone on with finds them there.
+fs::path kept_scale_factors(const fs::path& out) { return out / "scale_factors.json"; }
+
+void keep_scale_factors(const Sequence& sequence, const BenchArguments& arguments) {
+  if (arguments.scale_factors.empty()) return;
+  const estimator::FrontEndCalibration known = estimator::load_front_end_calibration(arguments.scale_factors);
+  for (const UnitDescription::Channel& c : sequence.laboratory.unit.channels) known.channel(c.name);   // refused now, not after a weekend
+  if (!arguments.resume && fs::exists(store_file(arguments.out))) return;                              // run_bench refuses
+  fs::create_directories(arguments.out);
+  save(known, kept_scale_factors(arguments.out));
+}
+
+std::optional<Analysis> analyse_run(const Sequence& sequence, const Store& store, const fs::path& out) {
+  if (sequence.procedure == "none") return std::nullopt;
+  std::optional<estimator::FrontEndCalibration> known;
+  if (fs::exists(kept_scale_factors(out))) known = estimator::load_front_end_calibration(kept_scale_factors(out));
+  Analysis analysis = analyse(sequence, store, known ? &*known : nullptr);
+  if (known) analysis.calibration = merge(*known, analysis.calibration);
+  return analysis;
+}
+
 // What the run measured, written beside its store. Returns the exit status.
 int conclude(const Sequence& sequence, const BenchArguments& arguments, const BenchResult& result) {
   const fs::path out = arguments.out;
   const Store store = Store::open(store_file(out));
+  const std::optional<Analysis> analysis = result.complete ? analyse_run(sequence, store, out) : std::nullopt;
   std::vector<Verdict> verdicts;
-  if (result.complete && sequence.procedure != "none") {
-    std::optional<estimator::FrontEndCalibration> known;
-    if (!arguments.scale_factors.empty()) known = estimator::load_front_end_calibration(arguments.scale_factors);
-    Analysis analysis = analyse(sequence, store, known ? &*known : nullptr);
-    if (known) analysis.calibration = merge(*known, analysis.calibration);
-    verdicts = hold_against_limits(sequence, analysis);
-    save(analysis.calibration, out / "calibration.json");
-    evaluation::write_atomically(out / "channels.csv", channels_csv(analysis));
+  if (analysis) {
+    verdicts = hold_against_limits(sequence, *analysis);
+    save(analysis->calibration, out / "calibration.json");
+    evaluation::write_atomically(out / "channels.csv", channels_csv(*analysis));
     fmt::print("{}", table_of(verdicts));
   }
   evaluation::write_atomically(out / "steps.csv", steps_csv(store));
   evaluation::write_atomically(out / "junit.xml", junit_xml(sequence, store, verdicts));
+  const Analysis* found = analysis ? &*analysis : nullptr;
+  const std::vector<BenchFigure> figures = bench_figures(sequence, store, found);
+  draw_figures(figures, out, kVersion);
+  evaluation::write_atomically(out / "report.html", bench_report_html(sequence, store, found, verdicts, figures, out, command_line(arguments)));
   const bool passed = std::ranges::all_of(verdicts, &Verdict::passed);
-  fmt::print("Outcome: {}{}\nResults: {}\n", result.outcome, passed ? "" : ", limits exceeded", arguments.out);
+  fmt::print("Outcome: {}{}\nResults: {}\nReport:  {}\n", result.outcome, passed ? "" : ", limits exceeded", arguments.out,
+             (out / "report.html").string());
   return result.outcome == "done" && passed ? 0 : 1;
 }
 
 int bench(const BenchArguments& arguments) {
   const Sequence sequence = load_sequence(arguments.sequence);
-  if (!arguments.scale_factors.empty()) {   // refused now rather than after a weekend
-    const auto known = estimator::load_front_end_calibration(arguments.scale_factors);
-    for (const UnitDescription::Channel& c : sequence.laboratory.unit.channels) known.channel(c.name);
-  }
   if (arguments.dry_run) {
     fmt::print("{}", describe(sequence));
     return 0;
   }
   BenchOptions options = options_for(arguments);
+  keep_scale_factors(sequence, arguments);
   StopOnSignal signals;
   BenchResult result;
   {
     BenchTerminal terminal;
+    LiveView live(sequence, arguments.out, kLiveRefresh);
+    if (arguments.resume) live.take_over(Store::open(store_file(options.out)));
     options.stop = &signals.asked();
     options.clear_stop = [&] { signals.clear(); };
-    options.progress = [&](const Progress& progress) { terminal.show(progress); };
+    options.progress = [&](const Progress& progress) {
+      terminal.show(progress);
+      live.show(progress);
+    };
+    options.trace = [&](const TraceRow& row) { live.add(row); };
     if (terminal.interactive() && !arguments.simulate && !arguments.unattended)
       options.prompt = [&](const PlannedStep& step) { return terminal.ask(step.text); };
     result = run_bench(sequence, options);
+    live.draw();
   }
   return conclude(sequence, arguments, result);
 }

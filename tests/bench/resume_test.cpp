@@ -41,6 +41,11 @@ std::string everything(const Store& store) {
     for (const ChannelCounts& c : r.channels) text += " " + c.channel + " " + std::to_string(c.N) + " " + std::to_string(c.P);
     text += " " + std::string(r.data.begin(), r.data.end()) + "\n";
   }
+  for (const TraceRow& t : store.trace()) {
+    text += t.port + " " + std::to_string(t.utime);
+    for (const std::int64_t v : t.raw) text.append(" ").append(std::to_string(v));
+    text += "\n";
+  }
   return text;
 }
 
