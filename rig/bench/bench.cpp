@@ -57,7 +57,7 @@ BenchResult run_bench(const Sequence& given, const BenchOptions& options) {
   std::filesystem::create_directories(options.out);
   const DirectoryLock lock(options.out);
   const std::filesystem::path file = store_file(options.out);
-  const std::int64_t begin = options.simulate ? options.simulated_start_utime : system_utime();
+  const std::int64_t begin = options.simulate ? options.simulation.start_utime : system_utime();
   RunInfo fresh{given.title, given.procedure, options.version, given.fingerprints, {}, begin, options.simulate, "running"};
   Store store = options.resume ? Store::open(file) : Store::create(file, fresh);
   const RunInfo info = store.info();

@@ -18,7 +18,6 @@ struct BenchOptions {
   SimulationSettings simulation;
   bool resume = false;
   std::string version;
-  std::int64_t simulated_start_utime = 1'704'067'200'000'000;   // 2024-01-01: a simulated run does not look at the clock
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const Progress&)> progress;
   std::function<bool(const PlannedStep&)> prompt;

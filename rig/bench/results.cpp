@@ -63,7 +63,7 @@ struct Suite {
 }  // namespace
 
 std::string shown(double value, const std::string& base) {
-  return base == "1" ? fmt::format("{:.3g} ppm", 1e6 * value) : show_quantity(value, base);
+  return base == "1" ? fmt::format("{:.3g} ppm", 1e6 * value) : fmt::format("{:.3g} nA", 1e9 * value);
 }
 
 double scale_expanded(const estimator::FrontEndChannel& channel) {

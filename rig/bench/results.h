@@ -16,7 +16,7 @@ struct Verdict {
   std::string base;                // SI unit of both
   bool passed() const { return value <= limit; }
 };
-std::string shown(double value, const std::string& base);   // relative ones in ppm
+std::string shown(double value, const std::string& base);   // relative ("1") in ppm, currents ("A") in nA
 std::vector<Verdict> hold_against_limits(const Sequence& sequence, const Analysis& analysis);
 
 // Largest over the temperatures that were calibrated, k = 2.

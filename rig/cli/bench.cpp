@@ -11,6 +11,7 @@
 
 #include "estimator/evaluation/atomic_file.h"
 #include "lcmtypes/error.h"
+#include "rig/bench/history.h"
 #include "rig/bench/report/live_view.h"
 #include "rig/bench/report/report.h"
 #include "rig/cli/bench_terminal.h"
@@ -26,7 +27,7 @@ using namespace rig::bench;
 constexpr std::chrono::milliseconds kLiveRefresh{2000};
 
 struct BenchArguments {
-  std::string sequence, out, simulation, scale_factors;
+  std::string sequence, out, simulation, scale_factors, history;
   bool simulate = false, dry_run = false, resume = false, unattended = false;
 };
 
@@ -89,6 +90,8 @@ int conclude(const Sequence& sequence, const BenchArguments& arguments, const Be
     save(analysis->calibration, out / "calibration.json");
     evaluation::write_atomically(out / "channels.csv", channels_csv(*analysis));
     fmt::print("{}", table_of(verdicts));
+    const fs::path history = arguments.history.empty() ? fs::absolute(out).lexically_normal().parent_path() / "calibrations" : fs::path(arguments.history);
+    fmt::print("Kept:    {} in {}\n", History(history).keep(analysis->calibration), history.string());
   }
   evaluation::write_atomically(out / "steps.csv", steps_csv(store));
   evaluation::write_atomically(out / "junit.xml", junit_xml(sequence, store, verdicts));
@@ -146,6 +149,7 @@ void add_bench(CLI::App& app, Command& chosen) {
   command->add_flag("--unattended", arguments->unattended, "Answer prompts with the sequence's own defaults, on a terminal too");
   command->add_option("--scale-factors", arguments->scale_factors,
                       "For a bias run: calibration file of a scale-factor run of the same unit; the result then holds both");
+  command->add_option("--history", arguments->history, "Directory to keep the calibration in; calibrations beside --out by default");
   command->footer(
       "Exit status 1 where the run ended early, a step failed or a limit is exceeded. SIGINT and SIGTERM end a run safely:\n"
       "calibrator off, chamber to ambient.\n"

@@ -29,6 +29,6 @@ void add_node(CLI::App& app, Command& chosen);
 
 inline constexpr void (*kCommands[])(CLI::App&, Command&) = {
     add_sweep, add_plan, add_estimate, add_evaluate, add_figures, add_report, add_film, add_compare, add_merge, add_node, add_analyse,
-    add_bench, add_bench_estimators, add_calibrate};
+    add_bench, add_bench_estimators, add_calibrate, add_calibrations};
 
 }  // namespace waverig::cli

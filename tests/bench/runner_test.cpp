@@ -25,7 +25,7 @@ struct OpenRun {
   explicit OpenRun(std::vector<Fault> faults = {}, const ShortSequence::Changes& changes = {}, const std::string& name = "scale_factor.toml")
       : files(name, changes),
         sequence(load_sequence(files.file())),
-        laboratory(SimulationSettings{{}, std::move(faults)}, sequence.laboratory, &time, time.now()),
+        laboratory(SimulationSettings{.faults = std::move(faults)}, sequence.laboratory, &time, time.now()),
         store(Store::create((std::filesystem::create_directories(files.out()), store_file(files.out())),
                             {sequence.title, sequence.procedure, "test", sequence.fingerprints, {}, time.now(), true, "running"})) {
     sequence.laboratory = laboratory.addressed();

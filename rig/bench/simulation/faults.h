@@ -27,6 +27,7 @@ struct Fault {
 };
 
 struct SimulationSettings {
+  std::int64_t start_utime = 1'704'067'200'000'000;   // 2024-01-01: a simulated run does not look at the clock
   WorldSettings world;
   std::vector<Fault> faults;
 };
@@ -34,7 +35,8 @@ struct SimulationSettings {
 // The fault of that kind that the device has now, or nullptr.
 const Fault* active(const std::vector<Fault>& faults, std::string_view device, FaultType type, double time_s);
 
-// A file (TOML): seed, and [[fault]] tables. Throws UserError.
+// A file (TOML): seed, noise_seed, start, [drift] and [[fault]] tables. Throws UserError.
+// rig/sequences/simulation.toml shows every key.
 SimulationSettings load_simulation(const std::filesystem::path& file);
 
 }  // namespace waverig::rig::bench

@@ -14,6 +14,17 @@ constexpr int kSlowStep = 10;       // ticks: while the unit does not stream
 constexpr int kThermalStep = 100;   // ticks: thermal models move by the second
 constexpr char kMagic[] = "waverig bench world 1";
 
+UnitTruth drawn_and_drifted(const WorldSettings& settings) {
+  UnitTruth unit = draw_unit(settings.unit, settings.seed);
+  RandomStream random(settings.drift.seed, "drift of the unit");
+  for (ChannelTruth& channel : unit.channels) {
+    channel.dsf_N[0] += random.gaussian(settings.drift.scale);
+    channel.dsf_P[0] += random.gaussian(settings.drift.scale);
+    channel.bias_A[0] += random.gaussian(settings.drift.bias_A);
+  }
+  return unit;
+}
+
 std::size_t expect_fields(const FrameLayout& layout, std::size_t count) {
   if (layout.fields.size() != count)
     throw UserError(fmt::format("frame layout {}: {} fields: expected {} of the simulated unit", layout.name,
@@ -26,7 +37,7 @@ std::size_t expect_fields(const FrameLayout& layout, std::size_t count) {
 World::World(const WorldSettings& settings, std::int64_t start_utime, const FrameLayout& counts,
              const FrameLayout& monitor)
     : settings_(settings),
-      unit_(draw_unit(settings.unit, settings.seed)),
+      unit_(drawn_and_drifted(settings)),
       calibrator_(draw_calibrator(settings.seed)),
       switch_(draw_switch(settings.seed)),
       dmm_(draw_dmm(settings.seed)),
@@ -36,9 +47,9 @@ World::World(const WorldSettings& settings, std::int64_t start_utime, const Fram
       counts_raw_(expect_fields(counts, 2 * kChannels + 5)),
       monitor_raw_(expect_fields(monitor, 5)) {
   state_.start_utime = start_utime;
-  state_.unit = settled_unit(unit_, settings.chamber.ambient_degC, derived_seed(settings.seed, "bench noise"));
+  state_.unit = settled_unit(unit_, settings.chamber.ambient_degC, derived_seed(settings.noise_seed, "bench noise"));
   state_.chamber.air_degC = state_.chamber.setpoint_degC = settings.chamber.ambient_degC;
-  state_.line = RandomStream(settings.seed, "serial line");
+  state_.line = RandomStream(settings.noise_seed, "serial line");
   controls.chamber.target_degC = settings.chamber.ambient_degC;
 }
 
@@ -77,7 +88,7 @@ void World::apply_setting() {
   if (level_A == state_.set_level_A && controls.calibrator.range_A == state_.set_range_A) return;
   state_.set_level_A = level_A;
   state_.set_range_A = controls.calibrator.range_A;
-  RandomStream random(derived_seed(settings_.seed, "calibrator setting", ++state_.settings), "drift");
+  RandomStream random(derived_seed(settings_.noise_seed, "calibrator setting", ++state_.settings), "drift");
   const double floor_A = estimator::kCalibratorTable2[range_index(state_.set_range_A)].floor_A;
   state_.drift_A = random.gaussian(calibrator_.floor_drift * floor_A);
 }
@@ -140,13 +151,13 @@ void World::corrupt(std::vector<std::uint8_t>& line, std::size_t from) {
 }
 
 double World::chamber_reading_degC() const {
-  RandomStream random(derived_seed(settings_.seed, "chamber thermometer", state_.unit.ticks), "reading");
+  RandomStream random(derived_seed(settings_.noise_seed, "chamber thermometer", state_.unit.ticks), "reading");
   return state_.chamber.air_degC + random.gaussian(0.01);
 }
 
 double World::dmm_reading_A(double range_A) const {
   const std::size_t range = range_index(range_A);
-  RandomStream random(derived_seed(settings_.seed, "dmm", state_.unit.ticks), "reading");
+  RandomStream random(derived_seed(settings_.noise_seed, "dmm", state_.unit.ticks), "reading");
   const double input_A = controls.dmm_in_path ? controls.route.polarity * state_.source_A : 0;
   return input_A * (1 + dmm_.gain[range]) + dmm_.offset_A[range] +
          random.gaussian(std::hypot(dmm_.noise_relative * input_A, dmm_.noise_A));

@@ -18,8 +18,17 @@
 
 namespace waverig::rig::bench {
 
-struct WorldSettings {
+// What has happened to the unit since it was drawn; standard deviations of the channels.
+struct UnitDrift {
   std::uint64_t seed = 1;
+  double scale = 0;                     // of each reset current, relative
+  double bias_A = 0;
+};
+
+struct WorldSettings {
+  std::uint64_t seed = 1;               // of the unit and the instruments
+  std::uint64_t noise_seed = 1;         // of what differs from run to run
+  UnitDrift drift;
   UnitSpread unit;
   ChamberTruth chamber;
 };
