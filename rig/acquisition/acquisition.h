@@ -40,6 +40,12 @@ struct UnitSettings;
 // The data sheet's figures for a unit of that kind: what a laboratory knows before any calibration.
 Sensitivities nominal_sensitivities(const UnitSettings& settings);
 
+// The front end's own calibration (waverig bench), and which of its channels carry x, y and z.
+struct FrontEndChoice {
+  estimator::FrontEndCalibration calibration;
+  std::array<std::string, 3> channels{"accel_1", "accel_2", "accel_3"};
+};
+
 class Acquisition {
  public:
   explicit Acquisition(const Sensitivities& sensitivities,
@@ -54,6 +60,7 @@ class Acquisition {
   // Kim, eqs. (1), (2); channels names those of x, y and z. Throws UserError where the calibration has none
   // of that name. What was found of the sensor with other worths (six positions) does not hold any more.
   void apply(const estimator::FrontEndCalibration& front_end, const std::array<std::string, 3>& channels);
+  void apply(const FrontEndChoice& front_end) { apply(front_end.calibration, front_end.channels); }
 
   // Bytes from the wire, in any pieces; sink(const UnitCounts&, const estimator::ImuSample&) for each intact
   // frame.

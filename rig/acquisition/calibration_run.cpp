@@ -22,6 +22,7 @@ CalibrationRun run_six_positions(const UnitSettings& settings, const UnitParamet
                                 run.record_s, run.batch_s));
   SimulatedUnit sensor(settings, unit, seed);
   Acquisition acquisition(sensitivities);
+  if (run.front_end) acquisition.apply(*run.front_end);
   RandomStream fixture(seed, "calibration fixture");
   std::vector<std::uint8_t> bytes;
 
@@ -93,7 +94,8 @@ CalibrationRun run_six_positions(const UnitSettings& settings, const UnitParamet
 
 estimator::AccelerometerCalibration true_calibration(const UnitSettings& settings, const UnitParameters& unit,
                                                      const Sensitivities& s, double temperature_degC,
-                                                     estimator::SixPositionModel model) {
+                                                     estimator::SixPositionModel model,
+                                                     const std::optional<FrontEndChoice>& front_end) {
   const AccelerometerParameters& a = unit.accelerometer;
   const double warmer = temperature_degC - kReferenceTemperature_degC, g = settings.earth.g_N.norm();
   const Matrix3d M = (Vector3d::Ones() + warmer * a.scale_drift_pdegC).asDiagonal() * a.M;
@@ -108,9 +110,16 @@ estimator::AccelerometerCalibration true_calibration(const UnitSettings& setting
     const double quantum = (current > 0 ? c.negative_quantum_C * (1 + c.negative_scale_error)
                                         : c.positive_quantum_C * (1 + c.positive_scale_error)) /
                            (1 + c.reset_clock_error);
-    const double nominal = current > 0 ? s.negative_quantum_C[i] : s.positive_quantum_C[i];
-    const double told = current / quantum * nominal / (1 + settings.front_end.master_clock_error);
-    return (told + s.converter_bias_A[i]) / s.current_per_accel_ApMps2;
+    double worth = current > 0 ? s.negative_quantum_C[i] : s.positive_quantum_C[i];
+    double bias_A = s.converter_bias_A[i];
+    if (front_end) {
+      const estimator::FrontEndChannel& found = front_end->calibration.channel(front_end->channels[k]);
+      worth = (current > 0 ? found.K_N_C(temperature_degC) : found.K_P_C(temperature_degC)) *
+              (1 + front_end->calibration.oscillator.at(temperature_degC));
+      bias_A = found.bias_A.at(temperature_degC);
+    }
+    const double told = current / quantum * worth / (1 + settings.front_end.master_clock_error);
+    return (told + bias_A) / s.current_per_accel_ApMps2;
   };
   std::array<estimator::PositionReading, 6> readings;
   for (std::size_t k = 0; k < 6; ++k) {

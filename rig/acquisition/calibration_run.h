@@ -2,6 +2,7 @@
 // frames go the real way through the acquisition, and the fit is made from the readings alone.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "estimator/calibration/six_position.h"
@@ -19,6 +20,7 @@ struct CalibrationRunSettings {
   std::int64_t begin_utime = 0;
   std::string sensor_id = "simulated";
   estimator::SixPositionModel model = estimator::SixPositionModel::kBent;
+  std::optional<FrontEndChoice> front_end;   // applied to the readings, as it will be in use
 };
 
 struct CalibrationRun {
@@ -39,7 +41,8 @@ CalibrationRun run_six_positions(const UnitSettings& settings, const UnitParamet
 // included, at one temperature. For the report beside the calibration, never for a correction.
 estimator::AccelerometerCalibration true_calibration(
     const UnitSettings& settings, const UnitParameters& unit, const Sensitivities& sensitivities,
-    double temperature_degC, estimator::SixPositionModel model = estimator::SixPositionModel::kBent);
+    double temperature_degC, estimator::SixPositionModel model = estimator::SixPositionModel::kBent,
+    const std::optional<FrontEndChoice>& front_end = std::nullopt);
 
 // What such a calibration leaves open of the scale for small movements about 1 g, relative, k = 1: the cubic
 // part of the bend, that of the quadratic one as the fit knows it (or all of it, where the fit is linear),

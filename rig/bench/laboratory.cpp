@@ -78,7 +78,7 @@ void check_address(const Laboratory& laboratory, const std::string& text, TomlTa
     table.refuse("address", "port://NAME with a known port");
 }
 
-UnitDescription read_unit(TomlTable table, const Laboratory& laboratory) {
+UnitDescription read_unit(TomlTable& table, const Laboratory& laboratory) {
   UnitDescription unit;
   unit.name = table.text("name", {});
   unit.serial = table.text("serial", {});
@@ -194,9 +194,19 @@ Laboratory load_laboratory(const std::filesystem::path& file) {
     laboratory.instruments.push_back(std::move(instrument));
     refuse_twice(laboratory.instruments, table);
   }
-  laboratory.unit = read_unit(root.table("unit"), laboratory);
+  const std::filesystem::path unit_file = file.parent_path() / root.text("unit", {});
   root.refuse_unknown_keys();
+  load_unit(unit_file, laboratory);
   return laboratory;
+}
+
+void load_unit(const std::filesystem::path& file, Laboratory& laboratory) {
+  TomlFile document(file);
+  laboratory.unit = read_unit(document.root(), laboratory);
+  document.root().refuse_unknown_keys();
+  laboratory.fingerprints.erase(laboratory.unit_file.filename().string());
+  laboratory.unit_file = file;
+  laboratory.fingerprints[file.filename().string()] = fingerprint(file);
 }
 
 }  // namespace waverig::rig::bench

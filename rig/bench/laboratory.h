@@ -77,6 +77,7 @@ struct Laboratory {
   std::vector<Gateway> gateways;
   std::vector<Instrument> instruments;
   std::vector<Port> ports;
+  std::filesystem::path unit_file;
   UnitDescription unit;
   std::map<std::string, std::string> fingerprints;   // of the files it was read from
 
@@ -86,6 +87,8 @@ struct Laboratory {
 
 // Throws UserError naming file, line, key, value and what was expected.
 Laboratory load_laboratory(const std::filesystem::path& file);
+// Another unit in the same laboratory. Throws UserError as above.
+void load_unit(const std::filesystem::path& file, Laboratory& laboratory);
 
 // Of a file's bytes, as 16 hexadecimal digits; throws UserError where it cannot be read.
 std::string fingerprint(const std::filesystem::path& file);

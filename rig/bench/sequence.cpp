@@ -364,6 +364,7 @@ Sequence load_sequence(const std::filesystem::path& file) {
   if (root.has("duration"))
     sequence.duration_s = parse_quantity(root.text("duration", {}), "s", root.place_of("duration") + ": duration").si;
   sequence.laboratory = load_laboratory(file.parent_path() / root.text("laboratory", {}));
+  if (root.has("unit")) load_unit(file.parent_path() / root.text("unit", {}), sequence.laboratory);
   sequence.fingerprints = sequence.laboratory.fingerprints;
   sequence.fingerprints[file.filename().string()] = fingerprint(file);
   for (TomlTable& window : root.tables("window")) {

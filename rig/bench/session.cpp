@@ -95,7 +95,14 @@ std::string TcpLink::read_line(double timeout_s) {
       return line;
     }
     if (buffer_.size() > kLineMax) fail(FaultKind::kUnexpected, "an answer without an end");
-    if (!reactor_.wait_readable(descriptor_, deadline)) fail(FaultKind::kTimeout, fmt::format("waited {:g} s", timeout_s));
+    bool readable = false;
+    try {
+      readable = reactor_.wait_readable(descriptor_, deadline);
+    } catch (...) {   // stopped while an answer is under way: nobody may take it for that of the next question
+      close();
+      throw;
+    }
+    if (!readable) fail(FaultKind::kTimeout, fmt::format("waited {:g} s", timeout_s));
     std::array<char, 4096> bytes;
     const ssize_t got = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) continue;

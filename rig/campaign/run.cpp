@@ -38,6 +38,7 @@ OrderedRun ordered_run(const RunPlan& plan) { return {plan.setting.period_s, pla
 
 Acquisition acquisition_of(const CampaignUnit& unit) {
   Acquisition acquisition(unit.sensitivities);
+  if (unit.front_end) acquisition.apply(*unit.front_end);
   if (unit.calibrated) acquisition.apply(unit.calibration.accelerometer, unit.calibration.gyroscope);
   if (unit.calibration.compass) acquisition.apply(*unit.calibration.compass);
   return acquisition;

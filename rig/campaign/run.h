@@ -17,6 +17,7 @@ struct CampaignUnit {
   UnitSettings settings;
   UnitParameters tested;                                  // the simulator's truth
   Sensitivities sensitivities;
+  std::optional<FrontEndChoice> front_end;                // its own calibration, where the campaign names one
   bool calibrated = false;
   estimator::SensorCalibration calibration;
   estimator::MethodSettings methods;                      // with what the calibration says of itself

@@ -127,12 +127,34 @@ SensorChoice read_sensor(TomlTable sensor) {
   return s;
 }
 
+// A calibration file of waverig bench: beside the campaign, or where the program was started.
+std::optional<FrontEndChoice> read_front_end(TomlTable& calibration) {
+  if (!calibration.has("front_end")) return std::nullopt;
+  const std::string file = calibration.text("front_end", {}), place = calibration.place_of("front_end");
+  const std::filesystem::path beside = std::filesystem::path(place.substr(0, place.rfind(':'))).parent_path() / file;
+  FrontEndChoice choice;
+  choice.calibration = estimator::load_front_end_calibration(std::filesystem::exists(beside) ? beside : std::filesystem::path(file));
+  const std::vector<std::string> channels =
+      calibration.texts("front_end_channels", std::vector<std::string>(choice.channels.begin(), choice.channels.end()));
+  if (channels.size() != choice.channels.size()) calibration.refuse("front_end_channels", "three channels, of x, y and z");
+  std::string known;
+  for (const estimator::FrontEndChannel& c : choice.calibration.channels) known += (known.empty() ? "" : ", ") + c.name;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (std::ranges::find(choice.calibration.channels, channels[i], &estimator::FrontEndChannel::name) == choice.calibration.channels.end())
+      calibration.refuse("front_end_channels", "channels among " + known);
+    choice.channels[i] = channels[i];
+  }
+  calibration.say("front_end", kFrontEndFile);
+  return choice;
+}
+
 CalibrationRunSettings read_calibration(TomlTable& calibration, bool& enabled) {
   CalibrationRunSettings s;
   enabled = calibration.boolean("enabled", true);
   s.settle_s = calibration.number("settle_s", s.settle_s, {0, 600});
   s.record_s = calibration.number("seconds_per_position", s.record_s, {2 * s.batch_s, 3600});
   s.fixture_sigma_rad = calibration.number("fixture_sigma_deg", s.fixture_sigma_rad / kDegree, {0, 5}) * kDegree;
+  s.front_end = read_front_end(calibration);
   return s;
 }
 

@@ -73,7 +73,7 @@ struct CampaignSettings {
   motion::EnvelopeSettings envelope;             // of the rig; the sensor's part is filled in from the sensor
   SensorChoice sensor;
   bool calibrate = true;                         // six positions at the start
-  CalibrationRunSettings calibration;
+  CalibrationRunSettings calibration;            // with the front end's own, where the campaign names one
   CompassMethod compass = CompassMethod::kNone;  // which of the two calibrations is applied
   CompassRunSettings compass_run;
   motion::AxisSettings axis;
@@ -81,6 +81,9 @@ struct CampaignSettings {
   estimator::MethodSettings estimator;
   std::int64_t start_utime = 0;                  // of the first run, virtual time
 };
+
+// Where a results directory keeps the front end's calibration, beside the resolved settings, which name it there.
+inline constexpr const char* kFrontEndFile = "front_end.json";
 
 struct Campaign {
   CampaignSettings settings;

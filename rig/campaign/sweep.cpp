@@ -65,6 +65,7 @@ CalibratedUnit calibrate(const CampaignSettings& campaign) {
   unit.settings = unit_settings(campaign);
   unit.tested = tested_unit(campaign);
   unit.sensitivities = nominal_sensitivities(unit.settings);
+  unit.front_end = campaign.calibration.front_end;
   unit.methods = campaign.estimator;
   unit.calibrated = campaign.calibrate;
   if (!campaign.calibrate) return result;
@@ -82,7 +83,8 @@ CalibratedUnit calibrate(const CampaignSettings& campaign) {
   if (unit.settings.magnetometer) compass = calibrate_compass(campaign, unit, run.end_utime);
   run.calibration = unit.calibration;
   result.report_json = calibration_report(
-      run, true_calibration(unit.settings, fresh, unit.sensitivities, run.calibration.temperature_degC));
+      run, true_calibration(unit.settings, fresh, unit.sensitivities, run.calibration.temperature_degC, settings.model,
+                            unit.front_end));
   if (compass)
     result.report_json =
         with_compass_report(result.report_json, *compass, fresh.magnetometer, campaign.magnetic.field);

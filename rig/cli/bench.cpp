@@ -14,6 +14,7 @@
 #include "rig/bench/history.h"
 #include "rig/bench/report/live_view.h"
 #include "rig/bench/report/report.h"
+#include "rig/campaign/sensor_unit.h"
 #include "rig/cli/bench_terminal.h"
 #include "rig/cli/commands.h"
 #include "rig/version.h"
@@ -27,7 +28,7 @@ using namespace rig::bench;
 constexpr std::chrono::milliseconds kLiveRefresh{2000};
 
 struct BenchArguments {
-  std::string sequence, out, simulation, scale_factors, history;
+  std::string sequence, out, simulation, unit_of, scale_factors, history;
   bool simulate = false, dry_run = false, resume = false, unattended = false;
 };
 
@@ -35,6 +36,7 @@ std::string command_line(const BenchArguments& a) {
   std::string text = "waverig bench " + a.sequence;
   if (a.simulate) text += " --simulate";
   if (!a.simulation.empty()) text += " --simulation " + a.simulation;
+  if (!a.unit_of.empty()) text += " --unit-of " + a.unit_of;
   if (!a.scale_factors.empty()) text += " --scale-factors " + a.scale_factors;
   return text + " --out " + a.out;
 }
@@ -45,6 +47,12 @@ BenchOptions options_for(const BenchArguments& arguments) {
   options.out = arguments.out;
   options.simulate = arguments.simulate;
   if (!arguments.simulation.empty()) options.simulation = load_simulation(arguments.simulation);
+  if (!arguments.unit_of.empty()) {
+    const rig::CampaignSettings campaign = rig::read_campaign(arguments.unit_of).settings;
+    const auto converter = rig::fresh_unit(campaign).converter;
+    options.simulation.world.converter.assign(converter.begin(), converter.end());
+    options.simulation.world.master_clock_error = rig::unit_settings(campaign).front_end.master_clock_error;
+  }
   options.version = kVersion;
   options.resume = arguments.resume;
   return options;
@@ -143,6 +151,8 @@ void add_bench(CLI::App& app, Command& chosen) {
   command->add_option("--out", arguments->out, "The run's directory: its store, calibration file, CSV, JUnit XML, report");
   command->add_flag("--simulate", arguments->simulate, "Start simulated instruments and run in virtual time, as fast as the machine goes");
   command->add_option("--simulation", arguments->simulation, "With --simulate: which laboratory, and what goes wrong there (TOML)")
+      ->needs("--simulate");
+  command->add_option("--unit-of", arguments->unit_of, "With --simulate: accel_1 to accel_3 are the front end of this campaign's sensor unit")
       ->needs("--simulate");
   auto* dry = command->add_flag("--dry-run", arguments->dry_run, "Check everything, print the plan and its total time, command nothing");
   command->add_flag("--resume", arguments->resume, "Go on where a run in --out was killed")->excludes(dry);

@@ -41,6 +41,8 @@ int merge(const MergeArguments& arguments) {
   evaluation::write_atomically(out / "report.html", render::report_html(results, out));
   fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover),
              arguments.out, (out / "report.html").string());
+  if (const auto& front_end = campaign.settings.calibration.front_end)
+    estimator::save(front_end->calibration, out / rig::kFrontEndFile);
   return 0;
 }
 

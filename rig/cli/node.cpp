@@ -147,6 +147,23 @@ void add_recorder(CLI::App& nodes, Command& chosen) {
       ->capture_default_str();
 }
 
+// Not on the bus: instruments have cables of their own.
+void add_instruments_sim(CLI::App& nodes, Command& chosen) {
+  auto a = std::make_shared<InstrumentsSimArguments>();
+  CLI::App* command = nodes.add_subcommand(
+      "instruments-sim", "The calibration bench's instruments, simulated: raw SCPI, VXI-11, GPIB gateway, serial ports");
+  command->add_option("laboratory", a->laboratory, "Laboratory file (TOML), e.g. rig/sequences/laboratory.toml")->required();
+  command->add_option("--simulation", a->simulation, "Which units and instruments, and what goes wrong (TOML)");
+  command->add_option("--write", a->write, "Write the laboratory file with the addresses of the simulated instruments");
+  command->footer(
+      "Prints every way to every instrument and serves until SIGINT or SIGTERM.\n"
+      "Example:\n"
+      "  waverig node instruments-sim rig/sequences/laboratory.toml &\n"
+      "  lxi scpi --address 127.0.0.1 --port PORT --raw '*IDN?'\n"
+      "  sigrok-cli --driver scpi-dmm:conn=tcp-raw/127.0.0.1/PORT --samples 3");
+  command->callback([a, &chosen] { chosen = [a] { return run_instruments_sim(*a); }; });
+}
+
 }  // namespace
 
 void add_node(CLI::App& app, Command& chosen) {
@@ -159,6 +176,7 @@ void add_node(CLI::App& app, Command& chosen) {
   add_estimator(*nodes, chosen);
   add_evaluator(*nodes, chosen);
   add_recorder(*nodes, chosen);
+  add_instruments_sim(*nodes, chosen);
   nodes->footer(kSession);  // last, or each node's help would end with it too
 }
 

@@ -50,6 +50,8 @@ int sweep(const SweepArguments& arguments) {
 
   rig::ResultsDirectory directory(arguments.out, mode_of(arguments));
   directory.claim(campaign.resolved);
+  if (const auto& front_end = campaign.settings.calibration.front_end)
+    estimator::save(front_end->calibration, directory.working() / rig::kFrontEndFile);
   const rig::CalibratedUnit calibrated = rig::calibrate(campaign.settings);
   if (!calibrated.report_json.empty())
     evaluation::write_atomically(directory.working() / "calibration.json", calibrated.report_json);

@@ -101,6 +101,8 @@ Value TomlTable::resolve(std::string_view key, Value value) {
   return value;
 }
 
+void TomlTable::say(std::string_view key, const std::string& value) { resolve(key, value); }
+
 double TomlTable::number(std::string_view key, std::optional<double> fallback, Range range) {
   const toml::node* node = find(key);
   if (node == nullptr && fallback) return resolve(key, *fallback);

@@ -38,6 +38,9 @@ class TomlTable {
   std::vector<double> numbers(std::string_view key, std::optional<std::vector<double>> fallback, Range range = {});
   std::vector<std::string> texts(std::string_view key, std::optional<std::vector<std::string>> fallback);
 
+  // What the resolved text shall say of a key instead of the value that was read, e.g. where a file has been copied to.
+  void say(std::string_view key, const std::string& value);
+
   // The table of that key; an empty one where it is absent.
   TomlTable table(std::string_view key);
   // The array of tables of that key, [[key]]; empty where it is absent.

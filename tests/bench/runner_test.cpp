@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <set>
+#include <thread>
 
 #include "lcmtypes/error.h"
 #include "rig/bench/bench.h"
@@ -12,6 +14,12 @@
 
 namespace waverig::rig::bench {
 namespace {
+
+SimulationSettings laboratory_with(std::vector<Fault> faults) {
+  SimulationSettings settings;
+  settings.faults = std::move(faults);
+  return settings;
+}
 
 // A run in the open, so that the laboratory can be looked at afterwards.
 struct OpenRun {
@@ -25,7 +33,7 @@ struct OpenRun {
   explicit OpenRun(std::vector<Fault> faults = {}, const ShortSequence::Changes& changes = {}, const std::string& name = "scale_factor.toml")
       : files(name, changes),
         sequence(load_sequence(files.file())),
-        laboratory(SimulationSettings{.faults = std::move(faults)}, sequence.laboratory, &time, time.now()),
+        laboratory(laboratory_with(std::move(faults)), sequence.laboratory, &time, time.now()),
         store(Store::create((std::filesystem::create_directories(files.out()), store_file(files.out())),
                             {sequence.title, sequence.procedure, "test", sequence.fingerprints, {}, time.now(), true, "running"})) {
     sequence.laboratory = laboratory.addressed();
@@ -173,6 +181,29 @@ TEST(Runner, StoppedByTheUserItEndsSafely) {
   EXPECT_EQ(runner.run(false), "stopped by the user");
   reactor.sleep_until(reactor.now() + 5'000'000);
   EXPECT_TRUE(run.safe());
+}
+
+TEST(Runner, StoppedAtAnyMomentItEndsSafely) {
+  RandomStream random(5, "stop");
+  for (int i = 0; i < 10; ++i) {
+    OpenRun run;
+    std::atomic<bool> stop{false};
+    Reactor reactor(&run.time, &stop);
+    RunnerHooks hooks;
+    hooks.clear_stop = [&] { stop = false; };
+    Runner runner(run.sequence, reactor, run.store, hooks);
+    std::jthread user([&, after_s = random.uniform(0.01, 0.4)] {   // in the middle of an answer, too
+      std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
+      stop = true;
+    });
+    const std::string outcome = runner.run(false);
+    user.join();
+    stop = false;
+    reactor.sleep_until(reactor.now() + 5'000'000);
+    EXPECT_TRUE(outcome == "stopped by the user" || outcome == "done") << outcome;
+    EXPECT_TRUE(run.safe());
+    for (const StepRow& row : run.store.steps()) EXPECT_NE(row.outcome, StepOutcome::kFailed) << row.what << ": " << row.message;
+  }
 }
 
 TEST(Sequence, RefusesWhatCannotWorkWithOneSentence) {

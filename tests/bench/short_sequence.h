@@ -23,7 +23,7 @@ class ShortSequence {
     const std::filesystem::path shipped = std::filesystem::path(WAVERIG_SOURCE_DIR) / "rig" / "sequences";
     for (const auto& entry : std::filesystem::directory_iterator(shipped))
       std::filesystem::copy_file(entry.path(), directory_ / entry.path().filename());
-    Changes changes = name == "scale_factor.toml" ? scale_factor() : bias();
+    Changes changes = name == "scale_factor.toml" ? scale_factor() : Changes{};
     changes.insert(changes.end(), more.begin(), more.end());
     change(name, changes);
     file_ = directory_ / name;
@@ -56,7 +56,6 @@ class ShortSequence {
             {"accels = [\"accel_1\", \"accel_2\", \"accel_3\", \"accel_4\"]", "accels = [\"accel_1\"]"},
             {"duration = \"100 s\"", "duration = \"5 s\""}};
   }
-  static Changes bias() { return {}; }
 
   std::filesystem::path directory_, file_;
 };

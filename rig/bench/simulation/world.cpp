@@ -16,6 +16,14 @@ constexpr char kMagic[] = "waverig bench world 1";
 
 UnitTruth drawn_and_drifted(const WorldSettings& settings) {
   UnitTruth unit = draw_unit(settings.unit, settings.seed);
+  for (std::size_t i = 0; i < settings.converter.size(); ++i) {
+    const ConverterChannelSettings& given = settings.converter[i];
+    ChannelTruth& channel = unit.channels.at(kGyroChannels + i);
+    channel = {.K_N0_C = given.negative_quantum_C, .K_P0_C = given.positive_quantum_C, .dsf_N = {given.negative_scale_error},
+               .dsf_P = {given.positive_scale_error}, .bias_A = {given.bias_A}, .noise_A_sqrt_s = channel.noise_A_sqrt_s};
+    unit.converter_clock_error = {given.reset_clock_error};
+    unit.master_error = {settings.master_clock_error};
+  }
   RandomStream random(settings.drift.seed, "drift of the unit");
   for (ChannelTruth& channel : unit.channels) {
     channel.dsf_N[0] += random.gaussian(settings.drift.scale);

@@ -29,6 +29,9 @@ struct WorldSettings {
   std::uint64_t seed = 1;               // of the unit and the instruments
   std::uint64_t noise_seed = 1;         // of what differs from run to run
   UnitDrift drift;
+  // Instead of those drawn: accel_1 and so on, their converter's clock among them, and the unit's master clock.
+  std::vector<ConverterChannelSettings> converter;
+  double master_clock_error = 0;
   UnitSpread unit;
   ChamberTruth chamber;
 };

@@ -25,6 +25,7 @@ rig::CampaignUnit unit_on_the_rig(const rig::CampaignSettings& campaign, const s
   rig::CampaignUnit unit;
   unit.settings = rig::unit_settings(campaign);
   unit.sensitivities = rig::nominal_sensitivities(unit.settings);
+  unit.front_end = campaign.calibration.front_end;
   unit.methods = campaign.estimator;
   unit.calibrated = !calibration.empty();
   if (!unit.calibrated) return unit;

@@ -45,4 +45,9 @@ struct RecorderArguments {
 };
 int run_recorder(const RecorderArguments& arguments);
 
+struct InstrumentsSimArguments {
+  std::string laboratory, simulation, write;
+};
+int run_instruments_sim(const InstrumentsSimArguments& arguments);
+
 }  // namespace waverig::cli

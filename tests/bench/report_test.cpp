@@ -1,0 +1,123 @@
+// What a run leaves for people: CSV, JUnit XML, traces, live view, report.
+#include "rig/bench/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <pugixml.hpp>
+
+#include "rig/bench/bench.h"
+#include "rig/bench/report/live_view.h"
+#include "tests/bench/short_sequence.h"
+#include "tests/campaign/temporary_directory.h"
+
+namespace waverig::rig::bench {
+namespace {
+
+struct FinishedRun {
+  ShortSequence files;
+  Sequence sequence;
+  std::vector<TraceRow> heard;
+  BenchResult result;
+
+  explicit FinishedRun(const ShortSequence::Changes& changes = {}, std::vector<Fault> faults = {})
+      : files("scale_factor.toml", changes), sequence(load_sequence(files.file())) {
+    BenchOptions options;
+    options.out = files.out();
+    options.simulate = true;
+    options.simulation.faults = std::move(faults);
+    options.version = "test";
+    options.trace = [this](const TraceRow& row) { heard.push_back(row); };
+    result = run_bench(sequence, options);
+  }
+  Store store() const { return Store::open(store_file(files.out())); }
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(BenchReport, HoldsFiguresResultsInstrumentsAndFiles) {
+  const FinishedRun run;
+  const Store store = run.store();
+  const Analysis analysis = analyse(run.sequence, store);
+  const std::vector<Verdict> verdicts = hold_against_limits(run.sequence, analysis);
+  const std::vector<BenchFigure> figures = bench_figures(run.sequence, store, &analysis);
+  draw_figures(figures, run.files.out(), "test");
+  const std::string html = bench_report_html(run.sequence, store, &analysis, verdicts, figures, run.files.out(), "waverig bench <x>");
+  for (const char* stem : {"temperature", "procedure", "windows", "scale_factors", "closure"})
+    EXPECT_TRUE(std::filesystem::exists(run.files.out() / "figures" / (std::string(stem) + ".png"))) << stem;
+  std::size_t pictures = 0;
+  for (std::size_t at = 0; (at = html.find("data:image/png", at)) != std::string::npos; ++at) ++pictures;
+  EXPECT_EQ(pictures, figures.size());
+  for (const char* text : {"CAL-2A", "scale_factor.toml", "converter_unit.toml", "gyro_2", "calibrator", "waverig bench &lt;x&gt;",
+                           "Every step succeeded at its first attempt"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+
+  const std::vector<std::string> csv = lines_of(channels_csv(analysis));
+  ASSERT_EQ(csv.size(), 3U);   // a header and two channels
+  EXPECT_TRUE(csv[1].starts_with("gyro_2,3e-08,"));
+  EXPECT_EQ(std::ranges::count(csv[0], ','), std::ranges::count(csv[1], ','));
+  EXPECT_EQ(lines_of(steps_csv(store)).size(), store.steps().size() + 1);
+}
+
+TEST(BenchReport, JUnitTellsEveryLimitThatWasKeptAndEachThatWasNot) {
+  ShortSequence::Changes none;
+  const FinishedRun run(none, {{"counts", FaultType::kCorrupt, 0, 1e12, 0.02}});
+  std::vector<Verdict> verdicts = hold_against_limits(run.sequence, analyse(run.sequence, run.store()));
+  ASSERT_EQ(verdicts.size(), 2U);
+  EXPECT_TRUE(verdicts[0].passed());
+  verdicts[0].limit = 1e-9;
+  pugi::xml_document xml;
+  ASSERT_TRUE(xml.load_string(junit_xml(run.sequence, run.store(), verdicts).c_str()));
+  const pugi::xml_node channels = xml.child("testsuites").find_child_by_attribute("name", "channels");
+  EXPECT_EQ(channels.attribute("tests").as_int(), 2);
+  EXPECT_EQ(channels.attribute("failures").as_int(), 1);
+  const pugi::xml_node steps = xml.child("testsuites").find_child_by_attribute("name", "steps");
+  EXPECT_EQ(steps.attribute("tests").as_int(), 1 + 3 * (21 + 17) + 1);   // the supply, the recordings, the outcome
+  EXPECT_EQ(steps.attribute("failures").as_int(), 0);
+}
+
+TEST(Traces, FollowTheWholeRunAndAreTheSameFromTheStoreAsTheyCame) {
+  const FinishedRun run;
+  const std::vector<TraceRow> kept = run.store().trace();
+  ASSERT_EQ(kept.size(), run.heard.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_EQ(kept[i].raw, run.heard[i].raw);
+  const Traces traces = traces_of(run.sequence, run.store());
+  const auto finite_range = [](const std::vector<double>& v) {
+    double low = 1e9, high = -1e9;
+    for (const double x : v)
+      if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+    return std::pair(low, high);
+  };
+  const auto [cold, hot] = finite_range(traces.temperature_degC());
+  EXPECT_NEAR(cold, 5, 1);
+  EXPECT_NEAR(hot, 45, 1);
+  const auto [low, high] = finite_range(traces.current_A("gyro_2"));   // 5 s of 20 s at +-200 mA
+  EXPECT_GT(high, 20e-3);
+  EXPECT_LT(low, -20e-3);
+  for (std::size_t i = 1; i < traces.time_s().size(); ++i) EXPECT_LT(traces.time_s()[i] - traces.time_s()[i - 1], 2 * kTracePeriod_s);
+}
+
+TEST(LiveView, IsReplacedWholeWhileTheBenchRuns) {
+  const FinishedRun run;
+  const TemporaryDirectory directory;
+  LiveView live(run.sequence, directory.path(), std::chrono::milliseconds(0));
+  const auto picture = [&] { return bytes_of(directory / "live.png"); };
+  for (std::size_t i = 0; i < 40; ++i) live.add(run.heard[i]);
+  const std::string early = picture();
+  ASSERT_TRUE(early.starts_with("\x89PNG"));
+  EXPECT_TRUE(early.ends_with(std::string("IEND\xAE\x42\x60\x82", 8)));
+  live.take_over(run.store());
+  live.draw();
+  EXPECT_NE(picture(), early);
+  EXPECT_NE(bytes_of(directory / "live.html").find("live.png"), std::string::npos);
+  for (const auto& entry : std::filesystem::directory_iterator(directory.path()))   // nothing half-written remains
+    EXPECT_TRUE(entry.path().filename() == "live.png" || entry.path().filename() == "live.html") << entry.path();
+}
+
+}  // namespace
+}  // namespace waverig::rig::bench
