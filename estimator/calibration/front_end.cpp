@@ -158,6 +158,7 @@ FrontEndCalibration merge(const FrontEndCalibration& scale_factor, const FrontEn
   FrontEndCalibration merged = scale_factor;
   merged.id = scale_factor.id + "+" + bias.id;
   merged.procedure = scale_factor.procedure + "+" + bias.procedure;
+  merged.measured = std::max(scale_factor.measured, bias.measured);   // ISO 8601: the later one
   for (FrontEndChannel& c : merged.channels) {
     const FrontEndChannel& b = bias.channel(c.name);
     c.bias_A = b.bias_A;
