@@ -109,6 +109,9 @@ constexpr Parameter kParameters[] = {
     {"mean_direction", "degree", "sea_surface_wave_from_direction", "mean direction from, true",
      &Summary::mean_direction_deg},
     {"spread", "degree", "sea_surface_wave_directional_spread", "directional spread", &Summary::spread_deg},
+    {"peak_direction", "degree", "sea_surface_wave_from_direction_at_variance_spectral_density_maximum",
+     "direction from at the peak, true", &Summary::peak_direction_deg},
+    {"check_factor", "1", "", "horizontal over vertical motion", &Summary::check_factor},
 };
 
 }  // namespace

@@ -29,9 +29,15 @@ const CellResult* cell_of(const CampaignResults& results, const Setting& setting
   return nullptr;
 }
 
+bool tells_direction_alone(const evaluation::CellResult& cell) {
+  return std::isfinite(cell.sea.sea.spread_rad) && cell.statistics.waves == 0 &&
+         !std::isfinite(cell.heave_rmse_m);
+}
+
 std::vector<std::string> methods_of(const CampaignResults& results) {
   std::vector<std::string> methods;
   for (const CellResult& cell : results.cells) {
+    if (tells_direction_alone(cell)) continue;  // the figure of directions shows it
     if (std::find(methods.begin(), methods.end(), cell.method) == methods.end())
       methods.push_back(cell.method);
   }

@@ -18,6 +18,8 @@ std::vector<Setting> settings_of(const evaluation::CampaignResults& results);  /
 // The row of a setting and method, or nullptr.
 const evaluation::CellResult* cell_of(const evaluation::CampaignResults& results, const Setting& setting,
                                       const std::string& method);
+// A cell that has no place in tables and figures of heights and heave.
+bool tells_direction_alone(const evaluation::CellResult& cell);
 // Methods as every figure shows them: the palette number of each is its place here.
 std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
 

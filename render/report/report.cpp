@@ -80,6 +80,7 @@ std::string results_table(const CampaignResults& results) {
        "Std / limit", "RMSE"});
   for (const CellResult& cell : results.cells) {
     const evaluation::HeightStatistics& s = cell.statistics;
+    if (tells_direction_alone(cell)) continue;
     const std::string link = fmt::format("#{}", cell_id(cell));
     table.add_row({number_cell(cell.period_s, cell.period_s == std::floor(cell.period_s) ? 0 : 2),
                    number_cell(cm(cell.height_m), 0), text_cell(cell.method),
@@ -280,9 +281,10 @@ std::string report_html(const CampaignResults& results, const fs::path& director
   return html_page("waverig: " + results.name,
                    intro(results) + "<main>\n<section id=\"results\"><h2>Results</h2>\n" +
                        (are_seas(results) ? sea_results_table(results) : results_table(results)) +
-                       "</section>\n" + figures_section(directory) + budget_section(results) +
-                       excluded_section(results, directory) + runs_section(results) +
-                       rig_section(results, directory) + reproduce_section(results) + "</main>\n");
+                       direction_results_table(results) + "</section>\n" + figures_section(directory) +
+                       budget_section(results) + excluded_section(results, directory) +
+                       runs_section(results) + rig_section(results, directory) + reproduce_section(results) +
+                       "</main>\n");
 }
 
 }  // namespace waverig::render

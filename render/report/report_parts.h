@@ -15,6 +15,9 @@ std::string cell_id(const evaluation::CellResult& cell);
 std::string sea_answer(const evaluation::CampaignResults& results);
 std::string sea_results_table(const evaluation::CampaignResults& results);
 
+// Where the waves came from, where a method tells it.
+std::string direction_results_table(const evaluation::CampaignResults& results);
+
 // The rig, the sensor with its calibration, and the settings as resolved.
 std::string rig_section(const evaluation::CampaignResults& results, const std::filesystem::path& directory);
 
