@@ -34,9 +34,6 @@ int main(int argc, char** argv) {
   const std::string what = argc == 3 ? argv[1] : "";
   if (what != "film" && what != "figures") return 2;
   const evaluation::RunRecord run = test::example_run(12, 1.0, 300);
-  const auto start = std::chrono::steady_clock::now();
   (what == "film" ? film : figures)(run, argv[2]);
-  std::printf("%.0f\n",
-              std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   return 0;
 }
