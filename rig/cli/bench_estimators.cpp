@@ -9,6 +9,7 @@
 
 #include "estimator/evaluation/atomic_file.h"
 #include "lcmtypes/error.h"
+#include "rig/campaign/coverage.h"
 #include "rig/campaign/sweep.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/estimator_bench.h"
@@ -22,6 +23,7 @@ struct BenchEstimatorsArguments {
   std::string out;
   std::uint64_t seed = 1;
   int seeds = 0;  // 0: one, in full three
+  int rigs = -1;  // -1: none, in full 200
   bool full = false;
 };
 
@@ -143,7 +145,38 @@ std::string line(const Row& row) {
                      cell(f.lag_s, 3), cell(f.us_a_sample, 2));
 }
 
+// How often the truth lies inside the stated interval, and the budget against what is observed.
+void cover(const BenchEstimatorsArguments& arguments, int rigs) {
+  constexpr double kRun_s = 120;
+  const auto cells = rig::coverage(arguments.seed, rigs, {{4, 1}, {12, 1}}, kRun_s, "harmonic");
+  std::string text =
+      "method,period_s,height_cm,rigs,inside_percent,mean_error_percent,rms_error_percent,predicted_"
+      "percent\n";
+  fmt::print("\nmean heights of {} simulated rigs, a unit, calibration and noise each\n", rigs);
+  for (const rig::Coverage& c : cells) {
+    const double inside = 100.0 * c.inside / c.rigs;
+    fmt::print(
+        "{}, {:g} s, {:g} cm: inside the expanded interval {:.1f} %; error {:+.3f} % on average, {:.3f} % "
+        "rms, "
+        "{:.3f} % predicted\n",
+        c.method, c.setting.period_s, 100 * c.setting.height_m, inside, 100 * c.mean_error, 100 * c.rms_error,
+        100 * c.predicted);
+    text += fmt::format("{},{:g},{:g},{},{:.2f},{:.4f},{:.4f},{:.4f}\n", c.method, c.setting.period_s,
+                        100 * c.setting.height_m, c.rigs, inside, 100 * c.mean_error, 100 * c.rms_error,
+                        100 * c.predicted);
+  }
+  if (!arguments.out.empty()) evaluation::write_atomically(fs::path(arguments.out) / "coverage.csv", text);
+}
+
+void make_directory(const std::string& out) {
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error)
+    throw UserError(fmt::format("--out {}: {}; expected a directory that can be made", out, error.message()));
+}
+
 int bench_estimators(const BenchEstimatorsArguments& arguments) {
+  if (!arguments.out.empty()) make_directory(arguments.out);
   const rig::CalibratedUnit calibrated = rig::calibrate(rig::read_campaign("", &arguments.seed).settings);
   const int records = arguments.seeds > 0 ? arguments.seeds : (arguments.full ? 3 : 1);
   fmt::print("{}", heading());
@@ -164,14 +197,12 @@ int bench_estimators(const BenchEstimatorsArguments& arguments) {
       std::fflush(stdout);
     }
   }
-  if (arguments.out.empty()) return 0;
-  std::error_code error;
-  fs::create_directories(arguments.out, error);
-  if (error)
-    throw UserError(
-        fmt::format("--out {}: {}; expected a directory that can be made", arguments.out, error.message()));
-  evaluation::write_atomically(fs::path(arguments.out) / "estimators.csv", csv(rows));
-  evaluation::write_atomically(fs::path(arguments.out) / "gain_and_lag.csv", transfer_csv(rows));
+  if (!arguments.out.empty()) {
+    evaluation::write_atomically(fs::path(arguments.out) / "estimators.csv", csv(rows));
+    evaluation::write_atomically(fs::path(arguments.out) / "gain_and_lag.csv", transfer_csv(rows));
+  }
+  const int rigs = arguments.rigs >= 0 ? arguments.rigs : (arguments.full ? 200 : 0);
+  if (rigs > 0) cover(arguments, rigs);
   return 0;
 }
 
@@ -182,13 +213,18 @@ void add_bench_estimators(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
       "bench-estimators",
       "Every method on the same simulated seas and waves: error, gain, lag and cost as a table");
-  command->add_option("--out", arguments->out, "Directory for estimators.csv and gain_and_lag.csv");
+  command->add_option("--out", arguments->out,
+                      "Directory for estimators.csv, gain_and_lag.csv and coverage.csv");
   command->add_flag("--full", arguments->full,
                     "The whole grid, three records each, instead of a minute's choice");
   command->add_option("--seed", arguments->seed, "Of the sensor unit, the seas and the noise")
       ->capture_default_str();
   command->add_option("--records", arguments->seeds, "Records of each sea; 1, with --full 3")
       ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--rigs", arguments->rigs,
+                   "Simulated rigs over which the stated uncertainty is tried; 0, with --full 200")
+      ->check(CLI::Range(0, 100000));
   command->footer(
       "The sensor unit is the default campaign's, calibrated in six positions. A record begins in the midst "
       "of the sea.\n"
@@ -199,6 +235,7 @@ void add_bench_estimators(CLI::App& app, Command& chosen) {
       "std over the Cramer-Rao bound of a single wave's height. Examples:\n"
       "  waverig bench-estimators\n"
       "  waverig bench-estimators --full --out results/estimators\n"
+      "  waverig bench-estimators --rigs 200\n"
       "  waverig bench-estimators --seed 7 --records 5 --out results/estimators");
   command->callback([arguments, &chosen] { chosen = [arguments] { return bench_estimators(*arguments); }; });
 }
