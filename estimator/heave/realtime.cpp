@@ -14,7 +14,7 @@ constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabo
 constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
 constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
-constexpr std::size_t kRepeated = 160;  // nodes
+constexpr std::size_t kRepeated = 160;  // nodes: 40 s
 constexpr int kOldEnough = 120;         // fine nodes of one sea before another one is believed: half a minute
 
 double square(double x) { return x * x; }
@@ -62,10 +62,10 @@ void Realtime::add(const ImuSample& sample, Output& output) {
     restart(sample, a_up, output);
   } else {
     integrator_.add(sample.utime, a_up,
-                    [&](std::int64_t, const PathIncrement& increment) { fine_node(increment, output); });
+                    [&](std::int64_t, const PathIncrement& increment) { node(increment); });
   }
   // 3. Answer, now or after the lag.
-  if (!attitude.settled || static_cast<double>(settled_nodes_) * filter_.model().interval_s < kSettling_s)
+  if (!attitude.settled || static_cast<double>(settled_nodes_) * kFineInterval_s < kSettling_s)
     flags |= flag::kSettling;
   held_.push_back(hold(sample, attitude));
   held_.back().sample.flags = flags;
@@ -80,49 +80,36 @@ void Realtime::restart(const ImuSample& sample, double a_up_mps2, Output& output
   if (started_) {
     finish(output);  // no later node tells more of what is held
     const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
-    filter_.skip(
-        static_cast<int>(std::ceil(std::min(missing_s, kLongestSkip_s) / filter_.model().interval_s)));
+    filter_.skip(static_cast<int>(std::ceil(std::min(missing_s, kLongestSkip_s) / kFineInterval_s)));
     settled_nodes_ = 0;
     identifier_.gap();
+    first_.clear();
   }
   integrator_.start(sample.utime, a_up_mps2);
-  interval_ = {};
-  fine_nodes_ = 0;
   whole_.clear();
   disturbance_ = {};
   started_ = true;
 }
 
-void Realtime::fine_node(const PathIncrement& increment, Output& output) {
-  interval_ = interval_.then(increment, kFineInterval_s);
-  ++fine_nodes_;
-  if (identifier_.add(increment)) new_model_ = true;
-  if (fine_nodes_ * kFineInterval_s < filter_.model().interval_s) return;
-  filter_.step(interval_, disturbance_.mean());
-  if (first_.size() < kRepeated) first_.push_back({interval_, disturbance_.mean()});
-  whole_.push_back(interval_);
+void Realtime::node(const PathIncrement& increment) {
+  filter_.step(increment, disturbance_.mean());
+  if (first_.size() < kRepeated) first_.push_back({increment, disturbance_.mean()});
+  whole_.push_back(increment);
   if (std::ssize(whole_) > filter_.order()) whole_.pop_front();
-  interval_ = {};
-  fine_nodes_ = 0;
   disturbance_ = {};
   ++nodes_;
   ++settled_nodes_;
-  if (new_model_) take_model(output);
+  if (identifier_.add(increment)) take_model();
   if (filter_.surprised() && identifier_.age() > kOldEnough) identifier_.forget();
 }
 
-void Realtime::take_model(Output& output) {
-  if (identifier_.model().interval_s != filter_.model().interval_s) {
-    finish(output);  // other nodes from now on
-    whole_.clear();
-  }
+void Realtime::take_model() {
   if (nodes_ == std::ssize(first_)) {  // still at the beginning: as if the model had been known
     filter_ = HeaveFilter(identifier_.model());
     for (const FirstStep& step : first_) filter_.step(step.increment, step.disturbance_m2ps3);
   } else {
     filter_.set_model(identifier_.model());
   }
-  new_model_ = false;
 }
 
 Realtime::Held Realtime::hold(const ImuSample& sample, const AttitudeSample& attitude) const {
@@ -130,8 +117,8 @@ Realtime::Held Realtime::hold(const ImuSample& sample, const AttitudeSample& att
   held.sample.utime = sample.utime;
   held.sample.seq = sample.seq;
   held.sample.q_NB = attitude.q_NB;
-  held.partial = interval_.then(integrator_.partial(), integrator_.since_node_s());
-  held.since_node_s = fine_nodes_ * kFineInterval_s + integrator_.since_node_s();
+  held.partial = integrator_.partial();
+  held.since_node_s = integrator_.since_node_s();
   held.tilt_sigma_rad = attitude.tilt_sigma_rad;
   held.node = nodes_;
   return held;
@@ -147,7 +134,7 @@ void Realtime::estimate(const Held& held, HeaveSample& out) const {
     variance = filter_.variance_m2(t);
   } else {  // between two nodes that are known by now
     const PathIncrement& whole = whole_[whole_.size() - static_cast<std::size_t>(ago)];
-    const double dt = filter_.model().interval_s, b = filter_.bias_mps2();
+    const double dt = kFineInterval_s, b = filter_.bias_mps2();
     const double from = filter_.lagged_heave_m(ago), to = filter_.lagged_heave_m(ago - 1);
     const double speed = (to - from - whole.path_m + b * dt * dt / 2) / dt;
     out.heave_m = from + t * speed + held.partial.path_m - b * t * t / 2;

@@ -1,8 +1,9 @@
 // `realtime`: heave, heave rate and attitude of any sea, sample by sample.
 //
 // AttitudeFilter levels the specific force; PathIntegrator integrates its vertical part twice; SeaIdentifier
-// learns the sea's spectrum from it and HeaveFilter tells drift from sea by it, at nodes a quarter or half a
-// second apart. Between nodes heave is the double integral itself: gain one, no lag. With a fixed lag each
+// learns the sea's spectrum from it and HeaveFilter tells drift from sea by it, at nodes a quarter of a
+// second apart. Between nodes heave is the double integral itself: gain one, no lag. In the first 40 s each
+// new model goes through all nodes again, as if it had been known from the start. With a fixed lag each
 // sample waits until the nodes after it have told more about it.
 #pragma once
 #include <deque>
@@ -26,13 +27,13 @@ class Realtime : public Method {
  private:
   struct Held {  // a sample that waits for the fixed lag
     HeaveSample sample;
-    PathIncrement partial;  // from the filter's node before it
+    PathIncrement partial;  // from the node before it
     double since_node_s = 0, tilt_sigma_rad = 0;
     std::int64_t node = 0;  // number of that node
   };
   void restart(const ImuSample& sample, double a_up_mps2, Output& output);
-  void fine_node(const PathIncrement& increment, Output& output);
-  void take_model(Output& output);
+  void node(const PathIncrement& increment);
+  void take_model();
   Held hold(const ImuSample& sample, const AttitudeSample& attitude) const;
   void estimate(const Held& held, HeaveSample& sample) const;
   void release(std::int64_t until_utime, Output& output);
@@ -49,16 +50,14 @@ class Realtime : public Method {
     PathIncrement increment;
     double disturbance_m2ps3;
   };
-  std::vector<FirstStep> first_;     // steps since the start, for as long as they are gone through again
-  PathIncrement interval_;           // since the filter's last node, whole fine intervals
-  int fine_nodes_ = 0;               // how many
-  std::deque<PathIncrement> whole_;  // the filter's newest intervals, newest last
+  std::vector<FirstStep> first_;     // from the start on, for as long as a new model goes through them again
+  std::deque<PathIncrement> whole_;  // the newest node intervals, newest last
   std::deque<Held> held_;
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
-  MeanDisturbance disturbance_;  // since the filter's last node
+  MeanDisturbance disturbance_;  // since the last node
   Motion motion_;
-  bool started_ = false, new_model_ = false;
+  bool started_ = false;
 };
 
 }  // namespace waverig::estimator

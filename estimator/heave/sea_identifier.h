@@ -12,12 +12,12 @@
 namespace waverig::estimator {
 
 struct SeaIdentifierSettings {
-  int order = 96;                   // of the autoregression
-  double interval_s = 0.25;         // between the model's nodes; 0: as suits the sea
-  int block = 512;                  // fine nodes of a periodogram: 128 s
-  int every = 64;                   // fine nodes from one periodogram to the next; sooner at first
-  double memory_s = 300;            // of the density; 0: never forgets
-  double accel_noise_m2ps3 = 6e-6;  // two-sided density assumed until it is seen; data sheet
+  int order = 96;                       // of the autoregression
+  double interval_s = kFineInterval_s;  // between the model's nodes; 0: as suits the sea
+  int block = 512;                      // fine nodes of a periodogram: 128 s
+  int every = 64;                       // fine nodes from one periodogram to the next; sooner at first
+  double memory_s = 300;                // of the density; 0: never forgets
+  double accel_noise_m2ps3 = 6e-6;      // two-sided density assumed until it is seen; data sheet
 };
 
 class SeaIdentifier {

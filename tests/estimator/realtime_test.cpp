@@ -143,6 +143,15 @@ TEST(Realtime, BridgesShortGapsAndRecoversFromLongOnes) {
   EXPECT_LT(rms_over_hm0(out.heaves, record, after + 12000, out.heaves.size()), 0.03);
 }
 
+TEST(Realtime, RecoversFromAGapInItsFirstSeconds) {
+  const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 300}, 11);
+  std::vector<estimator::ImuSample> samples;
+  for (std::size_t i = 0; i < record.samples.size(); ++i)
+    if (i < 1500 || i > 2500) samples.push_back(record.samples[i]);
+  const Collector out = run_realtime(samples);
+  EXPECT_LT(rms_over_hm0(out.heaves, record, 9000, out.heaves.size()), 0.035);
+}
+
 TEST(Realtime, DropsRepeatedAndOutOfOrderSamples) {
   const SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 1, .duration_s = 400}, 7);
   std::vector<estimator::ImuSample> samples;
