@@ -20,6 +20,7 @@ constexpr const char* kSixPositionsWay = "six-positions";
 constexpr const char* kRotationWay = "rotation";
 constexpr const char* kEllipsoidWay = "ellipsoid";
 constexpr const char* kMaxMinWay = "max-min";
+constexpr double kTurning_radps = 0.1;
 
 struct AccelerometerArguments {
   std::string recording, out, way = kSixPositionsWay, sensor_id = "unnamed";
@@ -110,11 +111,12 @@ int calibrate_compass(const CompassArguments& arguments) {
   for (estimator::ImuSample sample; source(sample);) {
     if ((sample.flags & flag::kNoMagnetometer) != 0 || !sample.m_B_uT.allFinite()) continue;
     if (!raw_uT.empty() && sample.m_B_uT == raw_uT.back()) continue;  // slower than the inertial sensors
+    if (sample.w_NB_B.norm() < kTurning_radps) continue;  // a rest would outweigh the attitudes of the turn
     raw_uT.push_back(sample.m_B_uT);
     f_B.push_back(correct(sample.f_B));
   }
   if (raw_uT.empty())
-    throw UserError(fmt::format("{}: no magnetic field; expected columns mx,my,mz", arguments.recording));
+    throw UserError(fmt::format("{}: no magnetic field while the unit turns; expected columns mx,my,mz", arguments.recording));
   try {
     const auto max_min = estimator::max_min_compass(raw_uT, f_B),
                ellipsoid = estimator::ellipsoid_compass(raw_uT, f_B);
