@@ -165,14 +165,16 @@ std::string regular_table(const evaluation::CampaignResults& results) {
 
 std::string sea_table(const evaluation::CampaignResults& results) {
   const auto percent = [](double value, double of) { return 100 * (value / of - 1); };
+  const auto known = [](double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; };  // not every method tells it
   std::string table =
       fmt::format("{:>5} {:>7}  {:<12} {:>12} {:>12} {:>9} {:>8} {:>12} {:>13}\n", "Tp s", "Hm0 cm", "method",
                   "heave rms cm", "% of Hm0", "gain", "lag s", "Hm0 error %", "Tm02 error %");
   for (const auto& cell : results.cells) {
-    table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:9.4f} {:8.3f} {:12.2f} {:13.2f}\n", cell.period_s,
+    table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:9.4f} {:8.3f} {:>12} {:>13}\n", cell.period_s,
                          cell.height_m / kCentimetre, cell.method, cell.heave_rmse_m / kCentimetre,
                          100 * cell.heave_rmse_m / cell.true_hm0_m, cell.heave_gain, cell.heave_lag_s,
-                         percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m), percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s));
+                         known(percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m)),
+                         known(percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s)));
   }
   return table;
 }
