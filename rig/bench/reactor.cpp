@@ -38,7 +38,7 @@ bool Reactor::poll_once(int descriptor, int timeout_ms) {
   if (time_ != nullptr) waiting.push_back({time_->idle_descriptor(), POLLIN, 0});
   if (::poll(waiting.data(), waiting.size(), timeout_ms) < 0 && errno != EINTR)
     throw std::runtime_error(std::string("poll: ") + std::strerror(errno));
-  if (stop_ != nullptr && stop_->load()) throw Interrupted();
+  if (heeds_stop_ && stop_ != nullptr && stop_->load()) throw Interrupted();
   if (time_ != nullptr && waiting.back().revents != 0) time_->clear_idle();
   bool readable = false;
   for (const pollfd& w : waiting) {

@@ -20,6 +20,8 @@ class Reactor {
  public:
   // time: nullptr for real time. stop: set by a signal handler; every wait then throws Interrupted.
   explicit Reactor(VirtualTime* time, const std::atomic<bool>* stop = nullptr);
+  // Whether waits end by it: a tear-down goes through to its end whatever the user does.
+  void heed_stop(bool heed) { heeds_stop_ = heed; }
 
   std::int64_t now() const;   // microseconds since 1970, UTC; it never jumps back
   VirtualTime* virtual_time() const { return time_; }
@@ -46,6 +48,7 @@ class Reactor {
 
   VirtualTime* time_;
   const std::atomic<bool>* stop_;
+  bool heeds_stop_ = true;
   std::int64_t real_offset_us_ = 0;
   std::map<int, std::function<void()>> served_;
 };

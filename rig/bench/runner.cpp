@@ -49,6 +49,7 @@ Runner::Runner(const Sequence& sequence, Reactor& reactor, Store& store, RunnerH
 std::string Runner::run(bool resume) {
   bool aborted = false;
   std::string outcome;
+  reactor_.heed_stop(true);
   if (resume) look_back();
   try {
     store_.set_instruments(instruments_.identify());
@@ -61,6 +62,7 @@ std::string Runner::run(bool resume) {
     outcome = error.what();
     if (hooks_.clear_stop) hooks_.clear_stop();
   }
+  reactor_.heed_stop(false);
   tear_down(aborted);
   if (!aborted) outcome = failures_ > 0 ? "done with failures" : "done";
   store_.set_outcome(outcome);

@@ -44,7 +44,8 @@ struct OpenRun {
     reactor.sleep_until(reactor.now() + 5'000'000);
     return outcome;
   }
-  bool safe() const { return std::abs(laboratory.source_A()) < 1e-12 && laboratory.chamber_target_degC() == 23; }
+  // The calibrator's output dies away from as much as 200 mA; a nanoampere is nothing.
+  bool safe() const { return std::abs(laboratory.source_A()) < 1e-9 && laboratory.chamber_target_degC() == 23; }
   std::vector<StepRow> failures() const {
     std::vector<StepRow> rows = store.steps();
     std::erase_if(rows, [](const StepRow& r) { return r.outcome == StepOutcome::kDone || r.outcome == StepOutcome::kMadeSafe; });
@@ -201,7 +202,7 @@ TEST(Runner, StoppedAtAnyMomentItEndsSafely) {
     stop = false;
     reactor.sleep_until(reactor.now() + 5'000'000);
     EXPECT_TRUE(outcome == "stopped by the user" || outcome == "done") << outcome;
-    EXPECT_TRUE(run.safe());
+    EXPECT_TRUE(run.safe()) << i << ": " << outcome << " " << run.laboratory.source_A() << " A, " << run.laboratory.chamber_target_degC() << " degC";
     for (const StepRow& row : run.store.steps()) EXPECT_NE(row.outcome, StepOutcome::kFailed) << row.what << ": " << row.message;
   }
 }
