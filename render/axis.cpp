@@ -10,6 +10,18 @@ namespace {
 
 constexpr double kLargest = 1e300;  // keeps ranges finite
 
+// Equal limits get a sensible width.
+void give_width(double& low, double& high, bool log) {
+  if (log && high < low * (1 + 1e-9)) {
+    low /= 2;
+    high *= 2;
+  } else if (!log && high - low <= 1e-12 * std::max(std::abs(low), std::abs(high))) {
+    const double half = low == 0 ? 0.5 : 0.05 * std::abs(low);
+    low -= half;
+    high += half;
+  }
+}
+
 }  // namespace
 
 void set_limits(const Axis& axis, const Extent& data, bool padded, Mapping& out) {
@@ -33,19 +45,7 @@ void set_limits(const Axis& axis, const Extent& data, bool padded, Mapping& out)
   }
   low = std::clamp(low, -kLargest, kLargest);
   high = std::clamp(high, -kLargest, kLargest);
-  const auto part = [](double lo,
-                       double hi) {  // equal limits get a sensible width
-    if (hi - lo > 1e-12 * std::max(std::abs(lo), std::abs(hi))) return 0.0;
-    return lo == 0 ? 0.5 : 0.05 * std::abs(lo);
-  };
-  if (log && high < low * (1 + 1e-9)) {
-    low /= 2;
-    high *= 2;
-  } else if (!log) {
-    const double half = part(low, high);
-    low -= half;
-    high += half;
-  }
+  give_width(low, high, log);
   const double share = std::isfinite(axis.padding) ? axis.padding : padded ? 0.06 : 0;
   if (log) {
     const double factor = std::pow(high / low, share);
@@ -59,14 +59,7 @@ void set_limits(const Axis& axis, const Extent& data, bool padded, Mapping& out)
   if (usable(axis.low)) low = axis.low;
   if (usable(axis.high)) high = axis.high;
   if (low > high) std::swap(low, high);
-  if (log && high < low * (1 + 1e-9)) {
-    low /= 2;
-    high *= 2;
-  } else if (!log) {
-    const double half = part(low, high);
-    low -= half;
-    high += half;
-  }
+  give_width(low, high, log);
   out.low = low;
   out.high = high;
 }
