@@ -11,6 +11,12 @@ namespace waverig::render {
 using evaluation::CampaignResults;
 using evaluation::CellResult;
 
+namespace {
+
+constexpr double kReadable = 5;  // the longest bars of two methods on one scale differ by no more
+
+}  // namespace
+
 Figure uncertainty_budget_figure(const CampaignResults& results) {
   const std::vector<Setting> settings = settings_of(results);
   const std::vector<std::string> methods = methods_of(results);
@@ -20,7 +26,7 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
                     "from repeats, B: from knowledge beforehand",
                 .columns = 1};
   std::size_t rows = 0;
-  double longest_mm = 0;  // one scale for all methods
+  std::vector<double> longest_mm;  // a method
   // The settings that span the campaign: at most four, or the bars become
   // hairs.
   std::vector<Setting> shown;
@@ -53,6 +59,7 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
                 .x = {.label = "Standard uncertainty of the mean height", .unit = "mm"},
                 .legend = Legend::kAbove};
     panel.y.categories.assign(names.rbegin(), names.rend());  // the first on top
+    longest_mm.push_back(0);
     const double step = 0.8 / static_cast<double>(shown.size());
     for (std::size_t i = 0; i < shown.size(); ++i) {
       const CellResult* c = cell_of(results, shown[i], method);
@@ -67,7 +74,7 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
                                 panel.y.categories.begin());
         bars.at.push_back(at + 0.4 - (static_cast<double>(i) + 0.5) * step);
         bars.value.push_back(1000 * sigma_m);
-        longest_mm = std::max(longest_mm, bars.value.back());
+        longest_mm.back() = std::max(longest_mm.back(), bars.value.back());
       };
       double square = 0;
       for (const evaluation::Contribution& part : c->statistics.budget) {
@@ -82,11 +89,16 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
     figure.row_heights.push_back(static_cast<double>(names.size()));
     figure.panels.push_back(std::move(panel));
   }
-  for (Panel& panel : figure.panels) {
-    panel.x.low = 0;
-    panel.x.high = 1.05 * longest_mm;
+  // One scale for all methods, unless that leaves the bars of one too short to read.
+  if (!longest_mm.empty()) {
+    const auto [least, most] = std::minmax_element(longest_mm.begin(), longest_mm.end());
+    figure.share_x = *most <= kReadable * *least;
+    if (!figure.share_x) figure.subtitle += "; each method on a scale of its own";
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+      figure.panels[i].x.low = 0;
+      figure.panels[i].x.high = 1.05 * (figure.share_x ? *most : longest_mm[i]);
+    }
   }
-  figure.share_x = true;
   figure.height_mm = std::clamp(
       30 + 24 * static_cast<double>(figure.panels.size()) + 6.5 * static_cast<double>(rows), 60.0, 240.0);
   return figure;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lcmtypes/error.h"
+#include "render/figures/accuracy.h"
 #include "render/figures/calibration.h"
 #include "render/figures/direction.h"
 #include "render/figures/methods.h"
@@ -186,6 +187,24 @@ TEST(Rose, SharesAddUpToHundredPercent) {
 
 TEST(Methods, BaselineComesFirst) {
   EXPECT_EQ(in_order({"a", "lee2014", "b"}), (std::vector<std::string>{"lee2014", "a", "b"}));
+}
+
+TEST(CampaignFigures, BudgetsShareAScaleOnlyWhereBothCanBeRead) {
+  evaluation::CampaignResults results = test::example_campaign();
+  const auto scale_calibration = [&](const std::string& method, double factor) {
+    for (auto& cell : results.cells)
+      if (cell.method == method)
+        for (auto& part : cell.statistics.budget) part.sigma_m *= factor;
+  };
+  const Figure alike = uncertainty_budget_figure(results);
+  ASSERT_GE(alike.panels.size(), 2U);
+  EXPECT_TRUE(alike.share_x);
+  EXPECT_EQ(alike.panels[0].x.high, alike.panels[1].x.high);
+  scale_calibration("lee2014", 100);
+  const Figure apart = uncertainty_budget_figure(results);
+  EXPECT_FALSE(apart.share_x);
+  EXPECT_GT(std::abs(std::log(apart.panels[0].x.high / apart.panels[1].x.high)), std::log(5.0));
+  EXPECT_NE(apart.subtitle.find("a scale of its own"), std::string::npos);
 }
 
 }  // namespace
