@@ -4,6 +4,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 #include <tuple>
 
@@ -112,7 +113,8 @@ std::vector<NamedFigure> result_figures(const evaluation::CampaignResults& resul
 }
 
 std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
-                                     const evaluation::RunRecord& run, const FigureOptions& options) {
+                                     const evaluation::RunRecord& run, const FigureOptions& options,
+                                     RestRecords rest_of_repeats) {
   std::vector<NamedFigure> figures;
   const PaperTraces calibrated = recorded_traces(run, kBaselineMethod);
   const PaperTraces raw = options.uncalibrated ? options.uncalibrated(run) : PaperTraces{};
@@ -131,8 +133,9 @@ std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
     if (result.run == run.run) noise = result.noise_density_mps2_rthz;
   }
   figures.push_back({"spectra", spectra_figure(run, noise)});
-  if (const RestRecords rest = rest_of(run); !rest.empty())
-    figures.push_back({"allan-deviation", allan_figure(rest)});
+  RestRecords rest = rest_of(run);
+  append(rest, std::move(rest_of_repeats));
+  if (!rest.empty()) figures.push_back({"allan-deviation", allan_figure(rest)});
   return figures;
 }
 
@@ -142,6 +145,24 @@ std::vector<std::filesystem::path> write_figures(const std::vector<NamedFigure>&
   return drawn(tasks_of(figures, out, options), out, options.threads);
 }
 
+namespace {
+
+// What the sensor told at rest in the other runs of the chosen setting; a log at a time.
+RestRecords rest_of_repeats(const evaluation::CampaignResults& results, const evaluation::RunResult& chosen,
+                            const std::filesystem::path& runs) {
+  RestRecords rest;
+  std::set<std::string> seen{chosen.run};
+  for (const evaluation::RunResult& other : results.runs) {
+    const bool repeat = other.period_s == chosen.period_s && other.height_m == chosen.height_m;
+    const std::filesystem::path log = runs / (other.run + ".lcm");
+    if (repeat && seen.insert(other.run).second && std::filesystem::exists(log))
+      append(rest, rest_of(evaluation::load_run(log)));
+  }
+  return rest;
+}
+
+}  // namespace
+
 std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::CampaignResults& results,
                                                          const std::filesystem::path& runs,
                                                          const std::filesystem::path& out,
@@ -150,7 +171,7 @@ std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::Campa
   const evaluation::RunRecord run =
       chosen != nullptr ? evaluation::load_run(runs / (chosen->run + ".lcm")) : evaluation::RunRecord{};
   std::vector<NamedFigure> figures;
-  if (chosen != nullptr) figures = run_figures(results, run, options);
+  if (chosen != nullptr) figures = run_figures(results, run, options, rest_of_repeats(results, *chosen, runs));
   for (NamedFigure& figure : result_figures(results)) figures.push_back(std::move(figure));
   std::vector<Task> tasks = tasks_of(figures, out, options);
 

@@ -10,6 +10,7 @@
 
 #include "estimator/evaluation/results.h"
 #include "render/figure_writer.h"
+#include "render/figures/noise.h"
 #include "render/figures/paper.h"
 
 namespace waverig::render {
@@ -80,9 +81,10 @@ const evaluation::RunResult* paper_run(const evaluation::CampaignResults& result
 
 // What `results` give without any recording.
 std::vector<NamedFigure> result_figures(const evaluation::CampaignResults& results);
-// What one recorded run gives.
+// What one recorded run gives; the sensor's noise at rest from its repeats too.
 std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
-                                     const evaluation::RunRecord& run, const FigureOptions& options);
+                                     const evaluation::RunRecord& run, const FigureOptions& options,
+                                     RestRecords rest_of_repeats = {});
 
 // Draws and writes; the paths in the order of the figures.
 std::vector<std::filesystem::path> write_figures(const std::vector<NamedFigure>& figures,
