@@ -32,12 +32,18 @@ Panel rose_panel(std::string title, const std::vector<double>& directions_rad,
   for (std::size_t c = 0; c < kClasses; ++c) {
     const double from = static_cast<double>(c) * step, to = from + step;
     if (c > 0 && from >= highest) break;
-    Bars bars{.name = fmt::format("Hm0 {:g} to {:g} m", from, to), .width = 0.9 * kSector};
+    Bars bars{.name = fmt::format("Hm0 {:g} to {:g} m", from, to),
+              .look = {.color = static_cast<int>(c)},
+              .width = 0.9 * kSector};
     std::array<double, kSectors> share{};
+    bool any = false;
     for (const auto& [sector, i] : hits) {
-      if (hm0_m[i] >= from && (hm0_m[i] < to || c + 1 == kClasses))
+      if (hm0_m[i] >= from && (hm0_m[i] < to || c + 1 == kClasses)) {
         share[sector] += 100.0 / static_cast<double>(hits.size());
+        any = true;
+      }
     }
+    if (!any && highest > 0) continue;  // no such sea: nothing to explain
     for (std::size_t s = 0; s < kSectors; ++s) {
       bars.at.push_back(static_cast<double>(s) * kSector);
       bars.base.push_back(base[s]);

@@ -135,13 +135,13 @@ Figure oscillator_figure(const Analysis& analysis) {
   Figure figure{.title = "Master oscillator", .subtitle = "Against the function generator; band: k = 2, the generator's own 3 ppm included", .height_mm = 80};
   Panel panel{.x = {.label = "Temperature", .unit = "°C"}, .y = {.label = "Error", .unit = "ppm"}};
   const TemperatureLaw& law = analysis.oscillator.law;
-  add_law(panel, law, 1e6, 0, [&](double T) { return 2 * law.sigma_at(T); }, "law, k = 2", 0);
-  Points points{.name = "100 s counts", .look = {.color = 1, .marker = render::Marker::kCircle, .marker_pt = 2}};
+  Points points{.name = "100 s counts", .look = {.color = 1, .marker = render::Marker::kCircle, .marker_pt = 4}};
   for (const estimator::TemperaturePoint& p : analysis.oscillator.points) {
     points.x.push_back(p.temperature_degC);
     points.y.push_back(1e6 * p.value);
   }
   panel.marks.emplace_back(std::move(points));
+  add_law(panel, law, 1e6, 0, [&](double T) { return 2 * law.sigma_at(T); }, "law, k = 2", 0);
   figure.panels.push_back(std::move(panel));
   return figure;
 }
