@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kStep_s = 2e-3;  // of buoy and sensors
 constexpr double kSettled_s = 300;
+constexpr double kNodesAPeriod = 40;       // of a sea's peak, at least: for its bound
 constexpr double kTilt_rad = 3 * kDegree;  // of a regular wave's platform
 constexpr std::array kRelativeFrequencies = {0.7, 1.0, 1.3, 1.6, 2.0, 3.0, 4.0};  // of the peak's
 
@@ -73,6 +74,17 @@ struct Moments {
 };
 
 double percent(double value, double of) { return 100 * (value / of - 1); }
+
+motion::SeaSettings sea_of(const BenchCase& settings, std::uint64_t seed) {
+  return {.shape = settings.motion == BenchMotion::kJonswap ? motion::SpectrumShape::kJonswap
+                                                            : motion::SpectrumShape::kPiersonMoskowitz,
+          .hm0_m = settings.height_m,
+          .tp_s = settings.period_s,
+          .spreading_s = 10,
+          .random_amplitudes = true,
+          .exact_hm0 = false,
+          .seed = seed};
+}
 
 // Single waves: the method's own, else those of its heave, against the truth over the very same spans.
 void judge_waves(const BenchRecord& record, const Collector& found, const rig::CampaignUnit& unit,
@@ -149,17 +161,31 @@ BenchRecord bench_record(const BenchCase& settings, const rig::CampaignUnit& uni
                                          .phase_rad = phase_rad,
                                          .start_utime = start_utime}),
                     start_utime, seed);
-  const motion::SeaSettings sea{.shape = settings.motion == BenchMotion::kJonswap
-                                             ? motion::SpectrumShape::kJonswap
-                                             : motion::SpectrumShape::kPiersonMoskowitz,
-                                .hm0_m = settings.height_m,
-                                .tp_s = settings.period_s,
-                                .spreading_s = 10,
-                                .random_amplitudes = true,
-                                .exact_hm0 = false,
-                                .seed = seed};
   const motion::FloatSettings buoy{.heading_rad = heading_rad, .start_utime = start_utime, .seed = seed};
-  return recorded(settings, unit, motion::SeaMotion(motion::draw_components(sea), buoy), start_utime, seed);
+  return recorded(settings, unit, motion::SeaMotion(motion::draw_components(sea_of(settings, seed)), buoy),
+                  start_utime, seed);
+}
+
+std::optional<evaluation::HeaveBound> bound_of(const BenchCase& settings, const rig::CampaignUnit& unit) {
+  if (settings.motion == BenchMotion::kRegular) return std::nullopt;  // a line is no spectrum
+  const motion::SeaSettings sea = sea_of(settings, 0);
+  const motion::WaveSpectrum spectrum(sea.shape, sea.hm0_m, sea.tp_s, sea.gamma);
+  const double lowest_hz = sea.lowest_relative * spectrum.peak_Hz(),
+               highest_hz = sea.highest_relative * spectrum.peak_Hz();
+  return evaluation::HeaveBound(
+      {.density_m2_per_hz =
+           [=](double f_hz) { return f_hz >= lowest_hz && f_hz <= highest_hz ? spectrum.density(f_hz) : 0; },
+       .noise_density_mps2_rthz = unit.settings.accelerometer.noise_density_mps2,
+       .interval_s = std::exp2(std::floor(std::log2(sea.tp_s / kNodesAPeriod)))});
+}
+
+BenchLimits limits(const BenchCase& settings, const BenchMethod& method,
+                   const evaluation::HeaveBound& bound) {
+  const bool causal = method.name == "realtime";
+  const double lag_s = causal ? method.fixed_lag_s : evaluation::kWholeRecord_s;
+  const double percent_m = settings.height_m / 100;
+  return {bound.record_m(lag_s, settings.duration_s) / percent_m,
+          bound.record_m(lag_s, settings.duration_s, kSettled_s) / percent_m};
 }
 
 std::string BenchMethod::title() const {

@@ -2,9 +2,11 @@
 // unit after its six-position calibration, through frames and acquisition, given to methods one by one.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "estimator/evaluation/heave_bound.h"
 #include "estimator/evaluation/transfer.h"
 #include "estimator/evaluation/truth_series.h"
 #include "rig/campaign/run.h"
@@ -29,6 +31,9 @@ struct BenchRecord {
 // The seed draws sea, phases and noise; the unit stays the one given.
 BenchRecord bench_record(const BenchCase& settings, const rig::CampaignUnit& unit, std::uint64_t seed);
 
+// The least error that heave can have in a sea of the set spectrum; nothing for regular waves.
+std::optional<evaluation::HeaveBound> bound_of(const BenchCase& settings, const rig::CampaignUnit& unit);
+
 struct BenchMethod {
   std::string name;
   double fixed_lag_s = 0;
@@ -48,6 +53,12 @@ struct BenchFigures {
 
 BenchFigures judge_method(const BenchMethod& method, const BenchRecord& record,
                           const rig::CampaignUnit& unit);
+
+// What the method's heave is limited to by its lag, as BenchFigures has it.
+struct BenchLimits {
+  double rms = estimator::kUnknown, settled_rms = estimator::kUnknown;
+};
+BenchLimits limits(const BenchCase& settings, const BenchMethod& method, const evaluation::HeaveBound& bound);
 
 // Mean over records of what is signed, root mean square of what is not.
 BenchFigures pooled(const std::vector<BenchFigures>& figures);
