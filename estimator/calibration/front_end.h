@@ -56,7 +56,7 @@ struct FrontEndChannel {
 
 struct FrontEndCalibration {
   std::string id;                     // unique in a history
-  std::string procedure;              // scale_factor, bias, or what was merged
+  std::string procedure;              // scale_factor, scale_factor_dmm, bias, or what was merged
   std::string measured;               // ISO 8601, UTC
   std::string unit;                   // what was calibrated: name and serial number
   std::string version;                // of the program

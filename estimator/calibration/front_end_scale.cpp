@@ -186,7 +186,7 @@ ScaleFactors scale_factors_by_dmm(const std::vector<FrontEndReading>& readings, 
     const auto& [plus, minus] = both;
     if (!plus || !minus || !std::isfinite(plus->dmm_A) || !std::isfinite(minus->dmm_A) ||
         plus->dmm_range_A != minus->dmm_range_A)
-      throw UserError(fmt::format("level {} A: expected both polarities, each with its DMM reading in one DMM range", level_A));
+      throw UserError(fmt::format("level {:g} A: expected both polarities, each with its DMM reading in one DMM range", level_A));
     offset_of.try_emplace(plus->dmm_range_A, static_cast<Index>(offset_of.size()));
   }
 

@@ -51,7 +51,38 @@ FrontEndChannel by_design(const UnitDescription::Channel& design) {
   return channel;
 }
 
-void analyse_scale_factors(const Sequence& sequence, const std::vector<RecordingRow>& rows, Analysis& analysis) {
+// What the DMM read of one setting of one channel, in the place of the unit.
+struct MeterReadings {
+  double range_A = 0, sum_A = 0;
+  int count = 0;
+};
+
+std::string setting_of(const std::map<std::string, std::string>& tags, const std::string& where) {
+  std::string setting;
+  for (const char* tag : {"temperature", "channel", "setting"}) {
+    if (!tags.contains(tag)) throw UserError(fmt::format("{}: tags.{} is missing: expected it in the sequence file", where, tag));
+    setting += tags.at(tag) + ", ";
+  }
+  return setting;
+}
+
+// By the setting that the reading's step names in its tags.
+std::map<std::string, MeterReadings> meter_readings(const Sequence& sequence, const Store& store) {
+  std::map<std::string, MeterReadings> readings;
+  for (const StepRow& row : store.steps()) {
+    const auto& tags = sequence.plan.at(static_cast<std::size_t>(row.index)).tags;
+    if (row.outcome != StepOutcome::kDone || !row.value || !tags.contains("meter_range")) continue;
+    MeterReadings& of_setting = readings[setting_of(tags, row.where)];
+    of_setting.range_A = parse_quantity(tags.at("meter_range"), "A", row.where + ": tags.meter_range").si;
+    of_setting.sum_A += *row.value;
+    ++of_setting.count;
+  }
+  return readings;
+}
+
+// By the DMM where meter is given (Kim, eqs. 12-18), else by the calibrator (eqs. 4-11).
+void analyse_scale_factors(const Sequence& sequence, const std::vector<RecordingRow>& rows,
+                           const std::map<std::string, MeterReadings>* meter, Analysis& analysis) {
   const UnitDescription& unit = sequence.laboratory.unit;
   struct Group {
     std::vector<FrontEndReading> readings;
@@ -70,6 +101,13 @@ void analyse_scale_factors(const Sequence& sequence, const std::vector<Recording
     reading.rate_N_Hz = rates.N_Hz;
     reading.rate_P_Hz = rates.P_Hz;
     reading.duration_s = static_cast<double>(row.ticks) * unit.tick_s;
+    if (meter != nullptr) {
+      const auto found = meter->find(setting_of(row.tags, fmt::format("recording of step {}", row.index)));
+      if (found != meter->end()) {   // where a level has none, the method refuses it
+        reading.dmm_A = found->second.sum_A / found->second.count;
+        reading.dmm_range_A = found->second.range_A;
+      }
+    }
     group.readings.push_back(reading);
     group.temperature_sum += row.temperature;
   }
@@ -85,7 +123,8 @@ void analyse_scale_factors(const Sequence& sequence, const std::vector<Recording
     for (const auto& [temperature, group] : found->second) {
       try {
         result.scale_factors.push_back({group.temperature_sum / static_cast<double>(group.readings.size()),
-                                        estimator::scale_factors_by_calibrator(group.readings, knowledge)});
+                                        meter != nullptr ? estimator::scale_factors_by_dmm(group.readings, knowledge)
+                                                         : estimator::scale_factors_by_calibrator(group.readings, knowledge)});
       } catch (const UserError& error) {
         throw UserError(fmt::format("{} at {} degC: {}", design.name, temperature, error.what()));
       }
@@ -147,7 +186,11 @@ Analysis analyse(const Sequence& sequence, const Store& store, const estimator::
   for (const auto& [name, identity] : info.instruments) calibration.instruments.push_back(name + ": " + identity);
   for (const auto& [name, print] : info.files) calibration.files.push_back(name + ": " + print);
   const std::vector<RecordingRow> rows = good_recordings(store);
-  if (sequence.procedure == "scale_factor") analyse_scale_factors(sequence, rows, analysis);
+  if (sequence.procedure == "scale_factor") analyse_scale_factors(sequence, rows, nullptr, analysis);
+  if (sequence.procedure == "scale_factor_dmm") {
+    const std::map<std::string, MeterReadings> meter = meter_readings(sequence, store);
+    analyse_scale_factors(sequence, rows, &meter, analysis);
+  }
   if (sequence.procedure == "bias") analyse_bias(sequence, rows, known, analysis);
   return analysis;
 }

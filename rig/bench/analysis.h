@@ -14,7 +14,7 @@ namespace waverig::rig::bench {
 
 struct ChannelAnalysis {
   std::string channel;
-  std::vector<estimator::ScaleFactorsAtTemperature> scale_factors;   // procedure scale_factor
+  std::vector<estimator::ScaleFactorsAtTemperature> scale_factors;   // procedure scale_factor, scale_factor_dmm
   std::optional<estimator::BiasResult> bias;                         // procedure bias
 };
 

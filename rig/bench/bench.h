@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "rig/bench/analysis.h"
+#include "rig/bench/run_directory.h"
 #include "rig/bench/runner.h"
 #include "rig/bench/simulation/faults.h"
 
@@ -33,7 +33,5 @@ struct BenchResult {
 // Carries the sequence out into options.out (bench.sqlite). Throws UserError where it cannot begin or go on: another
 // run is there, the files have changed since, a broken ramp, another bench at work in the directory.
 BenchResult run_bench(const Sequence& sequence, const BenchOptions& options);
-
-inline std::filesystem::path store_file(const std::filesystem::path& out) { return out / "bench.sqlite"; }
 
 }  // namespace waverig::rig::bench

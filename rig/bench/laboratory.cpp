@@ -161,6 +161,7 @@ Laboratory load_laboratory(const std::filesystem::path& file) {
   Laboratory laboratory;
   laboratory.file = file;
   laboratory.fingerprints[file.filename().string()] = fingerprint(file);
+  laboratory.files.push_back(file);
   for (TomlTable& table : root.tables("gateway")) {
     laboratory.gateways.push_back({table.text("name", {}), table.text("address", {})});
     refuse_twice(laboratory.gateways, table);
@@ -174,6 +175,7 @@ Laboratory load_laboratory(const std::filesystem::path& file) {
     port.layout_file = file.parent_path() / table.text("layout", {});
     port.layout = load_frame_layout(port.layout_file);
     laboratory.fingerprints[port.layout_file.filename().string()] = fingerprint(port.layout_file);
+    laboratory.files.push_back(port.layout_file);
     laboratory.ports.push_back(std::move(port));
     refuse_twice(laboratory.ports, table);
   }
@@ -207,6 +209,7 @@ void load_unit(const std::filesystem::path& file, Laboratory& laboratory) {
   laboratory.fingerprints.erase(laboratory.unit_file.filename().string());
   laboratory.unit_file = file;
   laboratory.fingerprints[file.filename().string()] = fingerprint(file);
+  laboratory.files.push_back(file);
 }
 
 }  // namespace waverig::rig::bench

@@ -80,6 +80,7 @@ struct Laboratory {
   std::filesystem::path unit_file;
   UnitDescription unit;
   std::map<std::string, std::string> fingerprints;   // of the files it was read from
+  std::vector<std::filesystem::path> files;          // all that were opened: those, and that of a unit replaced since
 
   const Instrument* instrument(std::string_view name) const;
   const Port* port(std::string_view name) const;

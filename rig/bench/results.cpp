@@ -86,6 +86,14 @@ std::vector<Verdict> hold_against_limits(const Sequence& sequence, const Analysi
   return verdicts;
 }
 
+std::string table_of(const std::vector<Verdict>& verdicts) {
+  std::string text = fmt::format("{:<10} {:<14} {:>14} {:>12}\n", "channel", "quantity", "U (k = 2)", "limit");
+  for (const Verdict& v : verdicts)
+    text += fmt::format("{:<10} {:<14} {:>14} {:>12}  {}\n", v.channel, v.quantity, shown(v.value, v.base), shown(v.limit, v.base),
+                        v.passed() ? "" : "exceeded");
+  return text;
+}
+
 std::string channels_csv(const Analysis& analysis) {
   std::string text = "channel,K_N0_C,dsf_N_ppm,dsf_N_U_ppm,dsf_N_ppm_per_degC,dsf_N_order,K_P0_C,dsf_P_ppm,dsf_P_U_ppm,"
                      "dsf_P_ppm_per_degC,dsf_P_order,bias_nA,bias_U_nA,bias_nA_per_degC,bias_order,hysteresis_nA,"

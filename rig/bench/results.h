@@ -18,6 +18,7 @@ struct Verdict {
 };
 std::string shown(double value, const std::string& base);   // relative ("1") in ppm, currents ("A") in nA
 std::vector<Verdict> hold_against_limits(const Sequence& sequence, const Analysis& analysis);
+std::string table_of(const std::vector<Verdict>& verdicts);            // as the terminal shows it
 
 // Largest over the temperatures that were calibrated, k = 2.
 double scale_expanded(const estimator::FrontEndChannel& channel);      // relative, of the worse reset current

@@ -56,7 +56,7 @@ struct LiveWindow {
 
 struct Sequence {
   std::filesystem::path file;
-  std::string title, procedure;            // scale_factor, bias, none
+  std::string title, procedure;            // scale_factor, scale_factor_dmm, bias, none
   double duration_s = 0;                   // stated; 0: not
   bool uninterrupted = false;              // after a tear-down it cannot go on where it stood
   Laboratory laboratory;

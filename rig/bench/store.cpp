@@ -12,11 +12,11 @@ namespace waverig::rig::bench {
 namespace {
 
 using Json = nlohmann::json;
-constexpr int kSchemaVersion = 2;
+constexpr int kSchemaVersion = 3;
 
 constexpr const char* kSchema = R"(
 CREATE TABLE run(title TEXT, procedure TEXT, version TEXT, files TEXT, instruments TEXT, started INTEGER,
-                 simulated INTEGER, outcome TEXT);
+                 simulated INTEGER, outcome TEXT, sequence TEXT);
 CREATE TABLE step(sequence INTEGER PRIMARY KEY AUTOINCREMENT, idx INTEGER, attempt INTEGER, section TEXT, path TEXT,
                   what TEXT, place TEXT, outcome INTEGER, message TEXT, started INTEGER, ended INTEGER, value REAL,
                   limits TEXT, UNIQUE(idx, attempt));
@@ -56,6 +56,14 @@ const char* name_of(StepOutcome outcome) {
   return "";
 }
 
+namespace {
+
+[[noreturn]] void refuse(sqlite3* database) {
+  throw UserError(fmt::format("{}: {}: expected a bench store", sqlite3_db_filename(database, "main"), sqlite3_errmsg(database)));
+}
+
+}  // namespace
+
 // One prepared statement; columns and parameters in order.
 struct Store::Statement {
   Statement(sqlite3* database, const char* sql) : database_(database) {
@@ -65,7 +73,7 @@ struct Store::Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  [[noreturn]] void fail() const { throw UserError(fmt::format("bench store: {}", sqlite3_errmsg(database_))); }
+  [[noreturn]] void fail() const { refuse(database_); }
   Statement& bind(std::int64_t v) { return sqlite3_bind_int64(statement_, ++parameter_, v) == SQLITE_OK ? *this : (fail(), *this); }
   Statement& bind(double v) { return sqlite3_bind_double(statement_, ++parameter_, v) == SQLITE_OK ? *this : (fail(), *this); }
   Statement& bind(const std::string& v) {
@@ -118,8 +126,7 @@ sqlite3* open_database(const std::filesystem::path& file, int flags) {
 }  // namespace
 
 void Store::execute(const char* sql) const {
-  if (sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) != SQLITE_OK)
-    throw UserError(fmt::format("bench store: {}", sqlite3_errmsg(database_)));
+  if (sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) refuse(database_);
 }
 
 Store Store::create(const std::filesystem::path& file, const RunInfo& info) {
@@ -129,9 +136,9 @@ Store Store::create(const std::filesystem::path& file, const RunInfo& info) {
   store.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; BEGIN IMMEDIATE;");
   store.execute(kSchema);
   store.execute(fmt::format("PRAGMA user_version = {};", kSchemaVersion).c_str());
-  Statement(store.database_, "INSERT INTO run VALUES(?,?,?,?,?,?,?,?)")
+  Statement(store.database_, "INSERT INTO run VALUES(?,?,?,?,?,?,?,?,?)")
       .bind(info.title).bind(info.procedure).bind(info.version).bind(json_of(info.files)).bind(json_of(info.instruments))
-      .bind(info.started_utime).bind(std::int64_t{info.simulated}).bind(info.outcome).step();
+      .bind(info.started_utime).bind(std::int64_t{info.simulated}).bind(info.outcome).bind(info.sequence).step();
   store.execute("COMMIT;");
   return store;
 }
@@ -185,7 +192,7 @@ void Store::set_outcome(const std::string& outcome) {
 }
 
 RunInfo Store::info() const {
-  Statement row(database_, "SELECT title,procedure,version,files,instruments,started,simulated,outcome FROM run");
+  Statement row(database_, "SELECT title,procedure,version,files,instruments,started,simulated,outcome,sequence FROM run");
   if (!row.step()) throw UserError("bench store: it holds no run");
   RunInfo info;
   info.title = row.text();
@@ -196,6 +203,7 @@ RunInfo Store::info() const {
   info.started_utime = row.integer();
   info.simulated = row.integer() != 0;
   info.outcome = row.text();
+  info.sequence = row.text();
   return info;
 }
 

@@ -20,6 +20,7 @@ struct RunInfo {
   std::int64_t started_utime = 0;
   bool simulated = false;
   std::string outcome;                              // running, done, failed (limits), or why it ended
+  std::string sequence;                             // file, as the run's directory keeps it and from there
 };
 
 enum class StepOutcome { kDone, kFailed, kAccepted, kMadeSafe };   // accepted: failed, and the rule was to go on

@@ -58,17 +58,7 @@ BenchOptions options_for(const BenchArguments& arguments) {
   return options;
 }
 
-std::string table_of(const std::vector<Verdict>& verdicts) {
-  std::string text = fmt::format("{:<10} {:<14} {:>14} {:>12}\n", "channel", "quantity", "U (k = 2)", "limit");
-  for (const Verdict& v : verdicts)
-    text += fmt::format("{:<10} {:<14} {:>14} {:>12}  {}\n", v.channel, v.quantity, shown(v.value, v.base), shown(v.limit, v.base),
-                        v.passed() ? "" : "exceeded");
-  return text;
-}
-
 // The scale factors that a bias run goes by are kept with it: a run that is gone on with finds them there.
-fs::path kept_scale_factors(const fs::path& out) { return out / "scale_factors.json"; }
-
 void keep_scale_factors(const Sequence& sequence, const BenchArguments& arguments) {
   if (arguments.scale_factors.empty()) return;
   const estimator::FrontEndCalibration known = estimator::load_front_end_calibration(arguments.scale_factors);
@@ -78,20 +68,13 @@ void keep_scale_factors(const Sequence& sequence, const BenchArguments& argument
   save(known, kept_scale_factors(arguments.out));
 }
 
-std::optional<Analysis> analyse_run(const Sequence& sequence, const Store& store, const fs::path& out) {
-  if (sequence.procedure == "none") return std::nullopt;
-  std::optional<estimator::FrontEndCalibration> known;
-  if (fs::exists(kept_scale_factors(out))) known = estimator::load_front_end_calibration(kept_scale_factors(out));
-  Analysis analysis = analyse(sequence, store, known ? &*known : nullptr);
-  if (known) analysis.calibration = merge(*known, analysis.calibration);
-  return analysis;
-}
-
 // What the run measured, written beside its store. Returns the exit status.
 int conclude(const Sequence& sequence, const BenchArguments& arguments, const BenchResult& result) {
   const fs::path out = arguments.out;
   const Store store = Store::open(store_file(out));
-  const std::optional<Analysis> analysis = result.complete ? analyse_run(sequence, store, out) : std::nullopt;
+  std::optional<estimator::FrontEndCalibration> known;
+  if (fs::exists(kept_scale_factors(out))) known = estimator::load_front_end_calibration(kept_scale_factors(out));
+  const std::optional<Analysis> analysis = result.complete ? analyse_run(sequence, store, known ? &*known : nullptr) : std::nullopt;
   std::vector<Verdict> verdicts;
   if (analysis) {
     verdicts = hold_against_limits(sequence, *analysis);

@@ -154,7 +154,7 @@ void add_compass(CLI::App& command, Command& chosen) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand("calibrate", "A calibration file from a recording of a turned unit");
+  CLI::App* command = app.add_subcommand("calibrate", "A calibration file from a recording of a turned unit, or from a bench run");
   command->require_subcommand(1);
   auto arguments = std::make_shared<AccelerometerArguments>();
   CLI::App* accelerometer = command->add_subcommand(
@@ -185,7 +185,9 @@ void add_calibrate(CLI::App& app, Command& chosen) {
   accelerometer->callback(
       [arguments, &chosen] { chosen = [arguments] { return calibrate_accelerometer(*arguments); }; });
   add_compass(*command, chosen);
-  command->footer("Example:\n  waverig calibrate accelerometer six-sides.csv --out unit7.json");
+  add_calibrate_front_end(*command, chosen);
+  command->footer("Examples:\n  waverig calibrate accelerometer six-sides.csv --out unit7.json\n"
+                  "  waverig calibrate front-end results/scale --out unit7-front-end.json");
 }
 
 }  // namespace waverig::cli

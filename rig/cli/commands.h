@@ -21,6 +21,7 @@ void add_film(CLI::App& app, Command& chosen);
 void add_merge(CLI::App& app, Command& chosen);
 void add_compare(CLI::App& app, Command& chosen);
 void add_calibrate(CLI::App& app, Command& chosen);
+void add_calibrate_front_end(CLI::App& calibrate, Command& chosen);   // a command of calibrate
 void add_calibrations(CLI::App& app, Command& chosen);
 void add_bench(CLI::App& app, Command& chosen);
 void add_bench_estimators(CLI::App& app, Command& chosen);

@@ -163,6 +163,85 @@ TEST(CalibrationsProgram, ListsShowsAndComparesWhatTheBenchKept) {
   EXPECT_EQ(unknown, 2) << complaint;
 }
 
+struct Said {
+  int status;
+  std::string text;
+};
+
+Said calibrate(const ShortSequence& files, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"calibrate", "front-end"});
+  Program program(arguments, files.out("said.txt"));
+  const int status = program.wait();
+  return {status, program.said()};
+}
+
+TEST(CalibrateFrontEnd, GivesTheBenchsOwnFilesToTheByteFromTheRunsDirectoriesAlone) {
+  const ShortSequence files("scale_factor.toml",
+                            {{"gyros = [\"gyro_2\"]", "gyros = [\"gyro_1\", \"gyro_2\", \"gyro_3\", \"gyro_4\", \"gyro_5\", \"gyro_6\"]"},
+                             {"accels = [\"accel_1\"]", "accels = [\"accel_1\", \"accel_2\", \"accel_3\", \"accel_4\"]"},
+                             {"[\"5 degC\", \"25 degC\", \"45 degC\"]", "[\"20 degC\"]"}});
+  const ShortSequence ramp("bias.toml", {{"duration = \"25 h\" ", "# "}, {"count = 360", "count = 40"}, {"count = 360", "count = 40"}});
+  const std::string scale = files.out("scale").string(), with = files.out("with").string(), without = files.out("without").string();
+  const std::string factors = scale + "/calibration.json", file = files.out("afterwards.json").string();
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "bench");
+    arguments.emplace_back("--simulate");
+    Program program(arguments, files.out("said.txt"));
+    ASSERT_EQ(program.wait(), 0) << program.said();
+  };
+  run({files.file().string(), "--out", scale});
+  run({ramp.file().string(), "--out", with, "--scale-factors", factors});
+  run({ramp.file().string(), "--out", without});
+  // What the runs kept counts, not what has become of their files since.
+  std::ofstream(files.file(), std::ios::app) << "nonsense";
+  std::ofstream(ramp.file(), std::ios::app) << "nonsense";
+
+  for (const std::string& directory : {scale, with, without}) {   // with: by the scale factors that the run went by
+    const Said said = calibrate(files, {directory, "--out", file});
+    EXPECT_EQ(said.status, 0) << said.text;
+    EXPECT_EQ(bytes_of(file), bytes_of(directory + "/calibration.json"));
+  }
+  EXPECT_NE(bytes_of(file), bytes_of(with + "/calibration.json"));
+  EXPECT_EQ(calibrate(files, {without, "--scale-factors", factors, "--out", file}).status, 0);
+  EXPECT_EQ(bytes_of(file), bytes_of(with + "/calibration.json"));
+  const Said refused = calibrate(files, {scale, "--scale-factors", factors, "--out", file});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.text.find("expected it for a bias run"), std::string::npos) << refused.text;
+}
+
+TEST(CalibrateFrontEnd, RefusesWhatIsNoFinishedRunInOneLine) {
+  const Bench bench;
+  std::ofstream(bench.files.out("faults.toml")) << "[[fault]]\ndevice = \"switch\"\ntype = \"hang\"\nfrom = \"6700 s\"\n";
+  ASSERT_EQ(bench.start("ended", {"--simulation", bench.files.out("faults.toml").string()}).wait(), 1);
+  const std::string ended = bench.files.out("ended").string(), file = bench.files.out("x.json").string();
+  std::filesystem::create_directories(bench.files.out("empty"));
+  std::ofstream(bench.files.out("empty") / "bench.sqlite") << "no database";
+  const std::vector<std::pair<std::string, std::string>> wrong = {{ended, "has not come to its end"},
+                                                                  {bench.files.out("nowhere").string(), "no run is there"},
+                                                                  {bench.files.out("empty").string(), "expected a bench store"}};
+  for (const auto& [run, expected] : wrong) {
+    const Said said = calibrate(bench.files, {run, "--out", file});
+    EXPECT_EQ(said.status, 2) << said.text;
+    EXPECT_EQ(std::ranges::count(said.text, '\n'), 1) << said.text;
+    EXPECT_NE(said.text.find(expected), std::string::npos) << said.text;
+    EXPECT_NE(said.text.find(run), std::string::npos) << said.text;
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_EQ(calibrate(bench.files, {ended}).status, 2);   // nowhere to write
+  EXPECT_EQ(calibrate(bench.files, {"--help"}).status, 0);
+}
+
+TEST(CalibrateFrontEnd, RefusesARunWhoseKeptFilesWereChanged) {
+  const ShortSequence::Changes one_temperature = {{"[\"5 degC\", \"25 degC\", \"45 degC\"]", "[\"20 degC\"]"}};
+  const Bench bench(one_temperature);
+  ASSERT_EQ(bench.start("run").wait(), 0);
+  const std::filesystem::path kept = bench.files.out("run") / "sequence" / "converter_unit.toml";
+  std::ofstream(kept, std::ios::app) << "# 31 nC?\n";
+  const Said said = calibrate(bench.files, {bench.files.out("run").string(), "--out", bench.files.out("x.json").string()});
+  EXPECT_EQ(said.status, 2);
+  EXPECT_NE(said.text.find("has changed since the run"), std::string::npos) << said.text;
+}
+
 // The same bench in real time, against instruments in another process.
 TEST(InstrumentsSim, ServesABenchInRealTimeThatOnlyKnowsTheAddresses) {
   const Bench bench;

@@ -21,7 +21,7 @@ struct InMemoryBench {
   CalibratorTruth calibrator;
   SwitchTruth matrix;
   DmmTruth dmm;
-  RandomStream random;
+  RandomStream random, meter;
   UnitState state;
 
   InMemoryBench(std::uint64_t seed, const UnitSpread& spread = {})
@@ -30,6 +30,7 @@ struct InMemoryBench {
         matrix(draw_switch(seed)),
         dmm(draw_dmm(seed)),
         random(seed, "in-memory bench"),
+        meter(seed, "in-memory meter"),
         state(settled_unit(unit, kTemperatures_degC.front(), seed)) {}
 
   // Signed input; the recording as the acquisition would reduce it.
@@ -53,7 +54,7 @@ struct InMemoryBench {
     r.rate_P_Hz = estimator::count_rate_Hz(static_cast<double>(state.channels[c].P - P), 100, ratio);
     r.dmm_range_A = range_A;
     r.dmm_A = polarity * source_A * (1 + dmm.gain[range]) + dmm.offset_A[range] +
-              random.gaussian(std::hypot(dmm.noise_relative * level_A, dmm.noise_A));
+              meter.gaussian(dmm.offset_drift_A) + random.gaussian(std::hypot(dmm.noise_relative * level_A, dmm.noise_A));
     return r;
   }
 

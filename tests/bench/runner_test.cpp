@@ -35,7 +35,7 @@ struct OpenRun {
         sequence(load_sequence(files.file())),
         laboratory(laboratory_with(std::move(faults)), sequence.laboratory, &time, time.now()),
         store(Store::create((std::filesystem::create_directories(files.out()), store_file(files.out())),
-                            {sequence.title, sequence.procedure, "test", sequence.fingerprints, {}, time.now(), true, "running"})) {
+                            {sequence.title, sequence.procedure, "test", sequence.fingerprints, {}, time.now(), true, "running", {}})) {
     sequence.laboratory = laboratory.addressed();
   }
   std::string run() {
@@ -234,6 +234,7 @@ TEST(Sequence, RefusesWhatCannotWorkWithOneSentence) {
 TEST(Sequence, TheShippedProceduresAreAsLongAsTheDocumentSays) {
   const std::filesystem::path shipped = std::filesystem::path(WAVERIG_SOURCE_DIR) / "rig" / "sequences";
   EXPECT_NEAR(load_sequence(shipped / "scale_factor.toml").expected_s(), 38 * kHour, 0.02 * 38 * kHour);
+  EXPECT_NEAR(load_sequence(shipped / "scale_factor_dmm.toml").expected_s(), 27.6 * kHour, 0.02 * 27.6 * kHour);
   EXPECT_NEAR(load_sequence(shipped / "bias.toml").expected_s(), 25 * kHour, 0.02 * 25 * kHour);
 }
 

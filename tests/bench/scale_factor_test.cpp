@@ -129,6 +129,30 @@ TEST(ScaleFactorByDmm, IsBlindToTheCalibratorsOwnError) {
   EXPECT_NEAR(relative(f.K_N_C, bench.state.channels[9].quantum_N_C), 0, 5e-6);
 }
 
+TEST(ScaleFactorByDmm, TheStatedIntervalsCoverTheTruthOfTwoHundredUnits) {
+  int inside = 0, total = 0;
+  double squares = 0;
+  for (int i = 0; i < 200; ++i) {
+    InMemoryBench bench(static_cast<std::uint64_t>(4000 + i));
+    const int channel = i % kChannels;
+    const ScaleFactors f = estimator::scale_factors_by_dmm(bench.settings(channel), knowledge_of(channel));
+    const ChannelState& truth = bench.state.channels[static_cast<std::size_t>(channel)];
+    const Eigen::Matrix2d covariance = f.covariance_random + f.covariance_common;
+    for (const auto& [value, quantum, which] : {std::tuple{f.K_N_C, truth.quantum_N_C, 0}, {f.K_P_C, truth.quantum_P_C, 1}}) {
+      const double score = relative(value, quantum) / std::sqrt(covariance(which, which));
+      inside += std::abs(score) <= 2;
+      squares += score * score;
+      ++total;
+    }
+  }
+  const double coverage = 100.0 * inside / total;
+  RecordProperty("coverage_percent", std::to_string(coverage));
+  RecordProperty("closure", std::to_string(std::sqrt(squares / total)));
+  EXPECT_GE(coverage, 92);
+  EXPECT_LE(coverage, 98);
+  EXPECT_NEAR(std::sqrt(squares / total), 1, 0.12);
+}
+
 TEST(ScaleFactorLaws, HoldOverTemperatureForTwoHundredUnitsAndTheIntervalsCover) {
   int inside = 0, total = 0;
   double worst = 0, sum_squares = 0, stated = 0;

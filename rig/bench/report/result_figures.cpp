@@ -92,7 +92,7 @@ Figure scale_factor_figure(const Analysis& analysis) {
 }
 
 Figure closure_figure(const Analysis& analysis) {
-  Figure figure{.title = "Closure: what the fits leave over", .subtitle = "Fitted less commanded current, of each level, at all temperatures",
+  Figure figure{.title = "Closure: what the fits leave over", .subtitle = "Fitted less commanded or metered current, of each level, at all temperatures",
                 .columns = kColumns, .height_mm = 85};
   std::vector<double> limits;   // one panel for each kind of channel, which differ in their levels
   std::array<Panel, 2> panels;
@@ -102,20 +102,20 @@ Figure closure_figure(const Analysis& analysis) {
     panel = {.title = fmt::format("{} channels", kinds[k]),
              .x = {.label = "Level", .unit = "mA", .scale = render::Scale::kLog},
              .y = {.label = "Residual", .unit = "ppm"}, .legend = Legend::kAbove};
-    for (const int polarity : {1, -1}) {
-      Points points{.name = polarity > 0 ? "positive" : "negative",
-                    .look = {.color = polarity > 0 ? 0 : 1, .marker = polarity > 0 ? render::Marker::kCircle : render::Marker::kHollowCircle,
+    for (const int polarity : {1, -1, 0}) {
+      Points points{.name = polarity > 0 ? "positive" : polarity < 0 ? "negative" : "both in one row",
+                    .look = {.color = polarity < 0 ? 1 : 0, .marker = polarity < 0 ? render::Marker::kHollowCircle : render::Marker::kCircle,
                              .marker_pt = 3, .alpha = 0.7}};
       for (const ChannelAnalysis& measured : analysis.channels) {
         if (!measured.channel.starts_with(kinds[k])) continue;
         for (const auto& p : measured.scale_factors)
           for (const estimator::RowResidual& r : p.factors.residuals) {
             if (r.polarity != polarity) continue;
-            points.x.push_back(1e3 * r.level_A * (polarity > 0 ? 1.03 : 0.97));   // side by side
+            points.x.push_back(1e3 * r.level_A * (1 + 0.03 * polarity));   // side by side
             points.y.push_back(1e6 * r.relative);
           }
       }
-      panel.marks.emplace_back(std::move(points));
+      if (!points.x.empty()) panel.marks.emplace_back(std::move(points));
     }
     panel.marks.emplace_back(render::Rule{.at = 0});
     figure.panels.push_back(panel);
@@ -155,7 +155,7 @@ std::vector<BenchFigure> bench_figures(const Sequence& sequence, const Store& st
   if (!sequence.windows.empty())
     figures.push_back({"windows", "The live view's windows over the whole run.",
                        windows_figure(sequence.windows, traces, sequence.title, "")});
-  if (analysis != nullptr && sequence.procedure == "scale_factor") {
+  if (analysis != nullptr && sequence.procedure.starts_with("scale_factor")) {
     figures.push_back({"scale_factors", "Scale factors of each channel against temperature, with the law chosen by the data.",
                        scale_factor_figure(*analysis)});
     figures.push_back({"closure", "Closure: each level's residual about its channel's fit.", closure_figure(*analysis)});

@@ -35,6 +35,7 @@ struct DmmTruth {
   std::array<double, kRanges> gain{};
   std::array<double, kRanges> offset_A{};
   double noise_relative = 0.5e-6, noise_A = 0.2e-9;
+  double offset_drift_A = 1e-9;            // how much the offset has moved at each new level
 };
 DmmTruth draw_dmm(std::uint64_t seed);
 

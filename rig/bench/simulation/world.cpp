@@ -166,9 +166,10 @@ double World::chamber_reading_degC() const {
 double World::dmm_reading_A(double range_A) const {
   const std::size_t range = range_index(range_A);
   RandomStream random(derived_seed(settings_.noise_seed, "dmm", state_.unit.ticks), "reading");
+  RandomStream drift(derived_seed(settings_.noise_seed, "dmm offset", state_.settings), "drift");
   const double input_A = controls.dmm_in_path ? controls.route.polarity * state_.source_A : 0;
   return input_A * (1 + dmm_.gain[range]) + dmm_.offset_A[range] +
-         random.gaussian(std::hypot(dmm_.noise_relative * input_A, dmm_.noise_A));
+         drift.gaussian(dmm_.offset_drift_A) + random.gaussian(std::hypot(dmm_.noise_relative * input_A, dmm_.noise_A));
 }
 
 std::string World::snapshot() const {
