@@ -24,7 +24,7 @@ motion::EnvelopeSettings envelope_of(const CampaignSettings& settings) {
 }
 
 SettingPlan plan_sea(const CampaignSettings& campaign, const Setting& setting) {
-  SettingPlan plan{.setting = setting, .judgements = {}, .duration_s = campaign.sweep.profile.steady_s};
+  SettingPlan plan{.setting = setting, .judgements = {}, .duration_s = campaign.sweep.profile_of(setting).steady_s};
   if (const auto steep = motion::too_steep(setting.period_s, setting.height_m)) {
     plan.judgements.push_back({motion::EnvelopeReason::kBreaks, motion::Verdict::kRefuse, *steep});
     plan.refused = true;
@@ -35,12 +35,13 @@ SettingPlan plan_sea(const CampaignSettings& campaign, const Setting& setting) {
 SettingPlan plan_setting(const CampaignSettings& campaign, const Setting& setting) {
   if (campaign.sweep.mover == Mover::kSea) return plan_sea(campaign, setting);
   SettingPlan plan{.setting = setting, .judgements = {}};
-  motion::ProfileSettings profile = campaign.sweep.profile;
-  profile.period_s = setting.period_s;
-  plan.judgements = motion::judge(setting.period_s, setting.height_m, profile.ramp_periods, envelope_of(campaign));
+  const motion::RotationProfile profile(campaign.sweep.profile_of(setting));
+  plan.judgements =
+      motion::judge(setting.period_s, setting.height_m, profile.settings().ramp_periods, envelope_of(campaign));
   plan.refused = std::any_of(plan.judgements.begin(), plan.judgements.end(),
                              [](const auto& j) { return j.verdict == motion::Verdict::kRefuse; });
-  plan.duration_s = motion::RotationProfile(profile).duration_s();
+  plan.waves = profile.steady_periods();
+  plan.duration_s = profile.duration_s();
   return plan;
 }
 
@@ -76,16 +77,17 @@ void refuse_impossible(const CampaignSettings& campaign, const CampaignPlan& pla
 }
 
 std::string described(const CampaignSettings& campaign, const CampaignPlan& plan) {
-  std::string text = fmt::format("{}: {} runs of {} settings, {:.1f} h on a rig, methods {}\n\n{:>8} {:>9} {:>8} {:>10}  {}\n",
+  std::string text = fmt::format("{}: {} runs of {} settings, {:.1f} h on a rig, methods {}\n\n{:>8} {:>9} {:>8} {:>6} {:>10}  {}\n",
                                  campaign.name, plan.runs.size(), plan.settings.size(), plan.duration_s / 3600,
-                                 fmt::join(campaign.methods, ", "), "period s", "height cm", "repeats", "duration s", "remarks");
+                                 fmt::join(campaign.methods, ", "), "period s", "height cm", "repeats", "waves", "duration s", "remarks");
   for (const SettingPlan& p : plan.settings) {
     std::string remarks = p.judgements.empty() ? "runs" : "";
     for (const auto& j : p.judgements)
       remarks += fmt::format("{}{}: {}", remarks.empty() ? "" : "; ",
                              j.verdict == motion::Verdict::kRefuse ? "REFUSED" : "warning", j.sentence);
-    text += fmt::format("{:8.1f} {:9.1f} {:8} {:10.0f}  {}\n", p.setting.period_s, p.setting.height_m / kCentimetre,
-                        p.refused ? 0 : campaign.sweep.repeats, p.duration_s, remarks);
+    text += fmt::format("{:8.1f} {:9.1f} {:8} {:>6} {:10.0f}  {}\n", p.setting.period_s, p.setting.height_m / kCentimetre,
+                        p.refused ? 0 : campaign.sweep.repeats, p.waves > 0 ? fmt::to_string(p.waves) : "sea",
+                        p.duration_s, remarks);
   }
   return text;
 }

@@ -23,6 +23,7 @@ struct SettingPlan {
   Setting setting;
   std::vector<motion::Judgement> judgements;
   bool refused = false;
+  int waves = 0;                   // whole steady ones of a run; 0 on a sea
   double duration_s = 0;           // of one run
 };
 

@@ -29,9 +29,7 @@ SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const Campai
 }
 
 motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPlan& plan) {
-  motion::ProfileSettings profile = campaign.sweep.profile;
-  profile.period_s = plan.setting.period_s;
-  return motion::RotationProfile(profile);
+  return motion::RotationProfile(campaign.sweep.profile_of(plan.setting));
 }
 
 OrderedRun ordered_run(const RunPlan& plan) { return {plan.setting.period_s, plan.setting.height_m, plan.repeat}; }

@@ -40,6 +40,7 @@ SweepSettings read_sweep(TomlTable sweep) {
   if (s.mover == Mover::kArm && sweep.has("turn_per_repeat_deg"))
     s.turn_per_repeat_rad = sweep.number("turn_per_repeat_deg", std::nullopt, {-360, 360}) * kDegree;
   s.profile.steady_s = sweep.number("duration_s", 300, {1, 864000});
+  s.min_waves = static_cast<int>(sweep.integer("min_waves", s.min_waves, {0, 10000}));
   s.profile.ramp_periods = static_cast<int>(sweep.integer("ramp_periods", 2, {1, 100}));
   s.profile.rest_before_s = sweep.number("rest_before_s", 20, {0, 3600});
   s.profile.rest_after_s = sweep.number("rest_after_s", 2, {0, 3600});
@@ -159,6 +160,13 @@ CalibrationRunSettings read_calibration(TomlTable& calibration, bool& enabled) {
 }
 
 }  // namespace
+
+motion::ProfileSettings SweepSettings::profile_of(const Setting& setting) const {
+  motion::ProfileSettings p = profile;
+  p.period_s = setting.period_s;
+  p.steady_s = std::max(p.steady_s, min_waves * setting.period_s);
+  return p;
+}
 
 Campaign read_campaign(const std::filesystem::path& file, const std::uint64_t* seed_override) {
   if (file.empty()) return read_campaign(TomlFile(kDefaultCampaignText, "default campaign"), seed_override);

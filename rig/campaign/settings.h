@@ -37,9 +37,13 @@ struct SweepSettings {
   int repeats = 1;
   double turn_per_repeat_rad = 0;                // of the pedestal between repeats
   motion::ProfileSettings profile;               // of every run on the arm; the period is the setting's
+  int min_waves = 0;                           // of a steady part: longer than the profile's where that holds fewer
   motion::SeaSettings sea;                       // of every run on a sea; Tp, Hm0 and seed are the run's
   motion::FloatSettings buoy;
   OutsideEnvelope outside = OutsideEnvelope::kRefuse;
+
+  // Of a run of that setting; steady_s is a sea's whole record.
+  motion::ProfileSettings profile_of(const Setting& setting) const;
 };
 
 struct SensorChoice {

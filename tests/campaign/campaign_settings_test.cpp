@@ -49,6 +49,8 @@ TEST(CampaignSettings, ComplaintsNameFileLineKeyValueAndWhatWasExpected) {
             "c.toml:2: sweep.heights_cm is missing (line 4 has heights_m): expected a list with at least one number, each a number from 0.1 to 2000");
   EXPECT_EQ(complaint(std::string(kMinimal) + "repeats = 0\n"),
             "c.toml:5: sweep.repeats = 0: expected a whole number from 1 to 10000");
+  EXPECT_EQ(complaint(std::string(kMinimal) + "min_waves = -1\n"),
+            "c.toml:5: sweep.min_waves = -1: expected a whole number from 0 to 10000");
   EXPECT_EQ(complaint(std::string(kMinimal) + "speed = 1\n").substr(0, 43), "c.toml:5: sweep.speed = 1: unknown key; exp");
   EXPECT_TRUE(complaint(std::string("methods = [\"magic\"]\n") + kMinimal)
                   .starts_with("c.toml:1: methods = [ 'magic' ]: expected names among \"lee2014\", "));

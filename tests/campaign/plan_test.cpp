@@ -5,6 +5,7 @@
 #include <set>
 
 #include "lcmtypes/error.h"
+#include "rig/campaign/run.h"
 
 namespace waverig::rig {
 namespace {
@@ -27,6 +28,29 @@ TEST(Plan, EveryRunHasANameASeedAndATimeOfItsOwn) {
   }
   EXPECT_EQ(names.size(), plan.runs.size());
   EXPECT_EQ(seeds.size(), plan.runs.size());
+}
+
+TEST(Plan, RunsLastUntilTheyHaveTheWavesAskedFor) {
+  const CampaignSettings c = campaign(
+      "periods_s = [2.0, 7.0, 20.0]\nheights_cm = [30.0]\nduration_s = 100.0\nmin_waves = 14\nramp_periods = 1\n"
+      "rest_before_s = 5.0\nrest_after_s = 1.0\nrepeats = 2\n");
+  const CampaignPlan plan = plan_campaign(c);
+  ASSERT_EQ(plan.settings.size(), 3u);
+  EXPECT_EQ(plan.settings[0].waves, 50);  // 100 s hold more
+  EXPECT_EQ(plan.settings[1].waves, 15);  // 100 s, rounded up, do just so
+  EXPECT_EQ(plan.settings[2].waves, 14);
+  EXPECT_DOUBLE_EQ(plan.settings[2].duration_s, (14 + 2) * 20 + 6);
+  EXPECT_EQ(plan.runs.back().duration_s, plan.settings[2].duration_s);
+  for (const RunPlan& run : plan.runs) EXPECT_EQ(profile_of(c, run).duration_s(), run.duration_s);
+  EXPECT_NE(described(c, plan).find("    20.0      30.0        2     14        326  runs\n"), std::string::npos)
+      << described(c, plan);
+}
+
+TEST(Plan, RecordsOfASeaLastAsManyPeakPeriodsAsAskedFor) {
+  const CampaignPlan plan = plan_campaign(
+      campaign("motion = \"jonswap\"\nperiods_s = [4.0, 12.0]\nheights_cm = [50.0]\nduration_s = 600.0\nmin_waves = 100\n"));
+  EXPECT_EQ(plan.settings[0].duration_s, 600);
+  EXPECT_EQ(plan.settings[1].duration_s, 1200);
 }
 
 TEST(Plan, ShardsArePartsOfTheWholeWithTheSameSeeds) {
