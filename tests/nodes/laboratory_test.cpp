@@ -17,6 +17,7 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/event_log.h"
+#include "motion/kinematics/frames.h"
 #include "tests/nodes/process.h"
 
 namespace waverig {
@@ -29,6 +30,32 @@ constexpr const char* kCampaign =
     "1\nramp_periods = 1\n"
     "rest_before_s = 3.0\n[calibration]\nenabled = false\n";
 constexpr const char* kRun = "T04.00s_H050.0cm_r1";
+
+// The arm as a calibration wheel for a compass that hangs beside the motor; the second run is with the pedestal turned.
+constexpr const char* kCompassCampaign = R"(name = "compass"
+methods = ["directional"]
+[sweep]
+periods_s = [2.0]
+heights_cm = [60.0]
+duration_s = 20.0
+repeats = 2
+turn_per_repeat_deg = 90.0
+ramp_periods = 1
+rest_before_s = 3.0
+[place]
+declination_deg = -8.5
+[rig]
+arm_azimuth_deg = 17.0
+[rig.gondola]
+sensor_from_pivot_m = [0.0, 0.0, 0.0]
+[rig.motor]
+distance_m = 0.3
+stator_moment_Am2 = [0.1, -0.08, 0.15]
+rotor_moment_Am2 = [0.05, 0.0, 0.05]
+[sensor]
+magnetometer = "MAG3110"
+)";
+constexpr const char* kCompassRun = "T02.00s_H060.0cm_r2";
 
 // A port of this test's own: LCM on one port hears every group.
 std::string bus_url() {
@@ -68,7 +95,7 @@ class Laboratory : public ::testing::Test {
     return std::make_unique<Process>(temporary_, name, command);
   }
   std::unique_ptr<Process> rig_sim() {
-    auto rig = node("rig-sim", {"rig-sim", path("short.toml"), "--run", kRun, "--port", "0", "--serial-link",
+    auto rig = node("rig-sim", {"rig-sim", path(campaign_), "--run", run_, "--port", "0", "--serial-link",
                                 path("line"), "--watchdog-ms", "1500"});
     EXPECT_TRUE(rig->says("serial ", 30s)) << rig->err();
     return rig;
@@ -77,18 +104,26 @@ class Laboratory : public ::testing::Test {
   std::unique_ptr<Process> motion(const Process& rig) {
     const std::string out = rig.out();
     const std::size_t at = out.find("tcp://");
-    return node("motion", {"motion", path("short.toml"), "--run", kRun, "--drive",
+    return node("motion", {"motion", path(campaign_), "--run", run_, "--drive",
                            out.substr(at, out.find('\n') - at), "--max-cycle-gap-ms", "1000",
                            "--response-timeout-ms", "400", "--max-following-error-deg", "40"});
   }
 
   TemporaryDirectory temporary_;
+  std::string campaign_ = "short.toml", run_ = kRun;
 };
 
 double mean_height_m(const evaluation::CampaignResults& results, const std::string& method) {
   for (const auto& cell : results.cells)
     if (cell.method == method) return cell.statistics.mean_height_m;
   return std::nan("");
+}
+
+evaluation::RunResult run_named(const evaluation::CampaignResults& results, const std::string& name) {
+  for (const auto& run : results.runs)
+    if (run.run == name) return run;
+  ADD_FAILURE() << "no run " << name;
+  return {};
 }
 
 TEST_F(Laboratory, WholeRunFromDriveToResultsAndSomeoneElsesProgramIsJudgedToo) {
@@ -127,6 +162,39 @@ TEST_F(Laboratory, WholeRunFromDriveToResultsAndSomeoneElsesProgramIsJudgedToo) 
   EXPECT_GT(events["WAVERIG_IMU"], 2000);
   EXPECT_GT(events["WAVERIG_HEAVE_realtime"], 2000);
   EXPECT_GT(events["WAVERIG_HEAVE_outsider"], 1000);
+}
+
+TEST_F(Laboratory, CompassBesideTheMotorTellsThroughTheNodesWhatItTellsEmbedded) {
+  campaign_ = "compass.toml";
+  run_ = kCompassRun;
+  temporary_.write(campaign_, kCompassCampaign);
+  Process sweep(temporary_, "sweep", {WAVERIG_PROGRAM, "sweep", path(campaign_), "--out", path("embedded")});
+  ASSERT_EQ(sweep.wait(120s), 0) << sweep.err();
+  const std::string calibration = path("embedded/calibration.json");
+
+  auto rig = rig_sim();
+  auto acquisition = node(
+      "acquisition", {"acquisition", path(campaign_), "--serial", path("line"), "--calibration", calibration});
+  auto directional = node("directional", {"estimator", "directional", "--campaign", path(campaign_),
+                                          "--calibration", calibration, "--one-record"});
+  auto evaluator =
+      node("evaluator", {"evaluator", "--run", run_, "--out", path("results"), "--campaign", path(campaign_)});
+  for (auto* each : {&acquisition, &directional, &evaluator})
+    ASSERT_TRUE((*each)->says("ready", 60s)) << (*each)->err();
+  auto arm = motion(*rig);
+  ASSERT_EQ(arm->wait(150s), 0) << arm->err();
+  EXPECT_EQ(directional->wait(90s), 0) << directional->err();
+  EXPECT_EQ(evaluator->wait(90s), 0) << evaluator->err();
+
+  const evaluation::RunResult there = run_named(evaluation::read_results(temporary_ / "results"), run_);
+  const evaluation::RunResult embedded = run_named(evaluation::read_results(temporary_ / "embedded"), run_);
+  ASSERT_EQ(there.seas.size(), 1u);
+  ASSERT_EQ(embedded.seas.size(), 1u);
+  const estimator::SeaState &sea = there.seas[0].sea, &expected = embedded.seas[0].sea;
+  // The arm's plane, 17 degrees and 90 more, in which the sensor goes round: that is where the sea comes from.
+  EXPECT_NEAR(sea.mean_direction_rad, 107 * kDegree, 1.5 * kDegree);
+  EXPECT_NEAR(sea.mean_direction_rad, expected.mean_direction_rad, 1 * kDegree);
+  EXPECT_NEAR(sea.check_factor, expected.check_factor, 0.02);
 }
 
 // Hears the arm through the truth on the bus.
