@@ -93,6 +93,7 @@ void CellPooling::add(const RunResult& run) {
   heights_.close_record();
   bound_square_.add(run.statistics.bound_std_m * run.statistics.bound_std_m);
   heave_square_.add(run.heave_rmse_m * run.heave_rmse_m);
+  heave_bound_square_.add(run.heave_bound_m * run.heave_bound_m);
   true_hm0_.add(run.true_hm0_m);
   gain_.add(run.heave_gain);
   lag_.add(run.heave_lag_s);
@@ -108,6 +109,7 @@ void CellPooling::add(const RunResult& run) {
 void CellPooling::close() {
   cell_.statistics = heights_.statistics(cell_.height_m, std::sqrt(bound_square_.value()));
   cell_.heave_rmse_m = std::sqrt(heave_square_.value());
+  cell_.heave_bound_m = std::sqrt(heave_bound_square_.value());
   cell_.true_hm0_m = true_hm0_.value();
   cell_.heave_gain = gain_.value();
   cell_.heave_lag_s = lag_.value();

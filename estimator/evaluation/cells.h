@@ -43,8 +43,8 @@ class CellPooling {
   bool open_ = false;
   CellResult cell_;
   HeightAccumulator heights_;
-  Mean bound_square_, heave_square_, true_hm0_, gain_, lag_, sigma_ratio_, direction_error_,
-      direction_square_;
+  Mean bound_square_, heave_square_, heave_bound_square_, true_hm0_, gain_, lag_, sigma_ratio_,
+      direction_error_, direction_square_;
   MeanSea sea_;
   std::vector<CellResult> cells_;
 };

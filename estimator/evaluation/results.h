@@ -64,6 +64,7 @@ struct RunResult {
   std::vector<JudgedWave> waves;      // the steady ones
   std::vector<JudgedSea> seas;
   double heave_rmse_m = estimator::kUnknown;   // against the true heave over the steady part, mean removed
+  double heave_bound_m = estimator::kUnknown;  // the least that can be, of a sea of known spectrum (heave_bound.h)
   std::int64_t excluded_waves = 0;    // in ramps or cut by the record's edge
   double heave_gain = estimator::kUnknown;     // estimated over true heave, least squares over the steady part
   double heave_lag_s = estimator::kUnknown;    // positive: the estimate comes late
@@ -80,6 +81,7 @@ struct CellResult {
   std::string method;
   HeightStatistics statistics;
   double heave_rmse_m = estimator::kUnknown;      // root of the mean square over the repeats
+  double heave_bound_m = estimator::kUnknown;     // likewise
   double true_hm0_m = estimator::kUnknown;        // this and the following: means over the repeats
   double heave_gain = estimator::kUnknown;
   double heave_lag_s = estimator::kUnknown;

@@ -46,6 +46,10 @@ constexpr Column kSea[] = {
     {"tp_s", [](const CellResult& c) { return c.sea.sea.tp_s; }},
 };
 
+constexpr Column kHeaveBound[] = {
+    {"heave_bound_percent", [](const CellResult& c) { return 100 * c.heave_bound_m / c.true_hm0_m; }},
+};
+
 constexpr Column kDirection[] = {
     {"mean_direction_deg", [](const CellResult& c) { return c.sea.sea.mean_direction_rad / kDegree; }},
     {"spread_deg", [](const CellResult& c) { return c.sea.sea.spread_rad / kDegree; }},
@@ -67,6 +71,7 @@ std::string results_csv(std::span<const CellResult> cells) {
   };
   std::vector<std::span<const Column>> groups = {kAgreed, kMore};
   if (any_knows(kSea[0])) groups.emplace_back(kSea);
+  if (any_knows(kHeaveBound[0])) groups.emplace_back(kHeaveBound);
   if (std::any_of(std::begin(kDirection), std::end(kDirection), any_knows)) groups.emplace_back(kDirection);
 
   std::string text = "period_s,height_cm,method,waves";

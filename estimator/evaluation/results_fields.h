@@ -190,6 +190,7 @@ void fields(auto& a, Is<RunResult> auto& r) {
   a("height_m", r.height_m);
   fields(a, r.statistics);
   a("heave_rmse_m", r.heave_rmse_m);
+  a.known("heave_bound_m", r.heave_bound_m);
   a("heave_gain", r.heave_gain);
   a("heave_lag_s", r.heave_lag_s);
   a("heave_sigma_ratio", r.heave_sigma_ratio);
@@ -207,6 +208,7 @@ void fields(auto& a, Is<CellResult> auto& c) {
   a("method", c.method);
   fields(a, c.statistics);
   a("heave_rmse_m", c.heave_rmse_m);
+  a.known("heave_bound_m", c.heave_bound_m);
   a("true_hm0_m", c.true_hm0_m);
   a("heave_gain", c.heave_gain);
   a("heave_lag_s", c.heave_lag_s);

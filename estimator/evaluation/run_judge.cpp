@@ -176,6 +176,8 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
     result.true_tm02_s = sea.tm02_s;
   }
   result.heave_rmse_m = method.comparison.rmse_m();
+  if (const auto bound = settings_.heave_bound_m.find(name); bound != settings_.heave_bound_m.end())
+    result.heave_bound_m = bound->second;
   result.heave_gain = method.comparison.gain();
   result.heave_lag_s = method.comparison.lag_s();
   result.heave_sigma_ratio = method.comparison.sigma_ratio();

@@ -2,6 +2,7 @@
 // between channels, and tells at the end what each method's estimates are worth against the truth.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ struct JudgeSettings {
   double noise_density_mps2_rthz =
       estimator::kUnknown;      // one-sided, of the vertical acceleration; for the bound
   double sample_rate_hz = 100;  // of the sensor; for the bound
+  std::map<std::string, double, std::less<>>
+      heave_bound_m{};  // of methods whose sea is known (heave_bound.h)
 };
 
 struct RunRecord;

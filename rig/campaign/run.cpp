@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lcmtypes/error.h"
+#include "rig/campaign/sea_bound.h"
 #include "rig/campaign/sensor_unit.h"
 #include "rig/nodes/acquisition_node.h"
 #include "rig/nodes/estimator_node.h"
@@ -85,6 +86,18 @@ evaluation::JudgeSettings judge_settings(const CampaignUnit& unit) {
           .sample_rate_hz = 1 / unit.settings.sample_interval_s};
 }
 
+evaluation::JudgeSettings judge_settings(const CampaignSettings& campaign, const CampaignUnit& unit,
+                                         const RunPlan& plan) {
+  evaluation::JudgeSettings settings = judge_settings(unit);
+  if (campaign.sweep.mover != Mover::kSea) return settings;
+  const evaluation::HeaveBound bound =
+      sea_bound(sea_settings(campaign, unit, plan).sea, settings.noise_density_mps2_rthz);
+  for (const std::string& method : campaign.methods)
+    settings.heave_bound_m[method] =
+        bound.record_m(heave_lag_s(method, unit.methods.fixed_lag_s), plan.duration_s);
+  return settings;
+}
+
 std::vector<evaluation::RunResult> run_embedded(const CampaignSettings& campaign, const CampaignUnit& unit,
                                                 const RunPlan& plan, const std::filesystem::path& log) {
   Bus bus("memq://");
@@ -95,7 +108,7 @@ std::vector<evaluation::RunResult> run_embedded(const CampaignSettings& campaign
   std::vector<std::unique_ptr<EstimatorNode>> estimators;
   for (const std::string& method : campaign.methods)
     estimators.push_back(std::make_unique<EstimatorNode>(bus, method, unit.methods));
-  EvaluatorNode evaluator(bus, plan.name, judge_settings(unit));
+  EvaluatorNode evaluator(bus, plan.name, judge_settings(campaign, unit, plan));
 
   campaign.sweep.mover == Mover::kArm ? turn_arm(bus, campaign, unit, plan, acquisition)
                                       : float_on_sea(bus, campaign, unit, plan, acquisition);

@@ -36,5 +36,7 @@ Acquisition acquisition_of(const CampaignUnit& unit);
 
 // How the judge of a run of this campaign is set, embedded or from its log.
 evaluation::JudgeSettings judge_settings(const CampaignUnit& unit);
+evaluation::JudgeSettings judge_settings(const CampaignSettings& campaign, const CampaignUnit& unit,
+                                         const RunPlan& plan);  // with the bounds of its sea
 
 }  // namespace waverig::rig

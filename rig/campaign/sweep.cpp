@@ -103,7 +103,7 @@ evaluation::CampaignResults run_campaign(const Campaign& campaign, const Calibra
     in_parallel(options.jobs, runs.size(), [&](std::size_t i) {
       const auto log = directory.runs() / (runs[i].name + ".lcm");
       const auto judged = std::filesystem::exists(log)   // a log under its own name is whole: done before a resume
-                              ? evaluation::judge(evaluation::load_run(log), judge_settings(unit))
+                              ? evaluation::judge(evaluation::load_run(log), judge_settings(campaign.settings, unit, runs[i]))
                               : run_embedded(campaign.settings, unit, runs[i], log);
       {
         const std::lock_guard lock(writing);
@@ -167,12 +167,13 @@ std::string sea_table(const evaluation::CampaignResults& results) {
   const auto percent = [](double value, double of) { return 100 * (value / of - 1); };
   const auto known = [](double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; };  // not every method tells it
   std::string table =
-      fmt::format("{:>5} {:>7}  {:<12} {:>12} {:>12} {:>9} {:>8} {:>12} {:>13}\n", "Tp s", "Hm0 cm", "method",
-                  "heave rms cm", "% of Hm0", "gain", "lag s", "Hm0 error %", "Tm02 error %");
+      fmt::format("{:>5} {:>7}  {:<12} {:>12} {:>12} {:>7} {:>9} {:>8} {:>12} {:>13}\n", "Tp s", "Hm0 cm", "method",
+                  "heave rms cm", "% of Hm0", "bound", "gain", "lag s", "Hm0 error %", "Tm02 error %");
   for (const auto& cell : results.cells) {
-    table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:9.4f} {:8.3f} {:>12} {:>13}\n", cell.period_s,
+    table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:>7} {:9.4f} {:8.3f} {:>12} {:>13}\n", cell.period_s,
                          cell.height_m / kCentimetre, cell.method, cell.heave_rmse_m / kCentimetre,
-                         100 * cell.heave_rmse_m / cell.true_hm0_m, cell.heave_gain, cell.heave_lag_s,
+                         100 * cell.heave_rmse_m / cell.true_hm0_m,
+                         known(100 * cell.heave_bound_m / cell.true_hm0_m), cell.heave_gain, cell.heave_lag_s,
                          known(percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m)),
                          known(percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s)));
   }

@@ -12,13 +12,13 @@
 #include "lcmtypes/flags.h"
 #include "motion/regular_wave.h"
 #include "motion/sea_state.h"
+#include "rig/campaign/sea_bound.h"
 
 namespace waverig::cli {
 namespace {
 
 constexpr double kStep_s = 2e-3;  // of buoy and sensors
 constexpr double kSettled_s = 300;
-constexpr double kNodesAPeriod = 40;       // of a sea's peak, at least: for its bound
 constexpr double kTilt_rad = 3 * kDegree;  // of a regular wave's platform
 constexpr std::array kRelativeFrequencies = {0.7, 1.0, 1.3, 1.6, 2.0, 3.0, 4.0};  // of the peak's
 
@@ -168,21 +168,12 @@ BenchRecord bench_record(const BenchCase& settings, const rig::CampaignUnit& uni
 
 std::optional<evaluation::HeaveBound> bound_of(const BenchCase& settings, const rig::CampaignUnit& unit) {
   if (settings.motion == BenchMotion::kRegular) return std::nullopt;  // a line is no spectrum
-  const motion::SeaSettings sea = sea_of(settings, 0);
-  const motion::WaveSpectrum spectrum(sea.shape, sea.hm0_m, sea.tp_s, sea.gamma);
-  const double lowest_hz = sea.lowest_relative * spectrum.peak_Hz(),
-               highest_hz = sea.highest_relative * spectrum.peak_Hz();
-  return evaluation::HeaveBound(
-      {.density_m2_per_hz =
-           [=](double f_hz) { return f_hz >= lowest_hz && f_hz <= highest_hz ? spectrum.density(f_hz) : 0; },
-       .noise_density_mps2_rthz = unit.settings.accelerometer.noise_density_mps2,
-       .interval_s = std::exp2(std::floor(std::log2(sea.tp_s / kNodesAPeriod)))});
+  return rig::sea_bound(sea_of(settings, 0), unit.settings.accelerometer.noise_density_mps2);
 }
 
 BenchLimits limits(const BenchCase& settings, const BenchMethod& method,
                    const evaluation::HeaveBound& bound) {
-  const bool causal = method.name == "realtime";
-  const double lag_s = causal ? method.fixed_lag_s : evaluation::kWholeRecord_s;
+  const double lag_s = rig::heave_lag_s(method.name, method.fixed_lag_s);
   const double percent_m = settings.height_m / 100;
   return {bound.record_m(lag_s, settings.duration_s) / percent_m,
           bound.record_m(lag_s, settings.duration_s, kSettled_s) / percent_m};

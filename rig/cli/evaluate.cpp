@@ -99,7 +99,7 @@ void add_other_heave(evaluation::RunRecord& record, const std::string& method, c
   record.waves.erase(method);
 }
 
-// The sensor's rate and noise as far as log and earlier results tell them; they matter for the bound only.
+// The sensor's rate and noise and the bounds of its sea, as far as log and earlier results tell them.
 evaluation::JudgeSettings judge_settings(const evaluation::RunRecord& record,
                                          const evaluation::CampaignResults& earlier) {
   evaluation::JudgeSettings settings;
@@ -108,7 +108,10 @@ evaluation::JudgeSettings judge_settings(const evaluation::RunRecord& record,
         static_cast<double>(record.imu.size() - 1) /
         (static_cast<double>(record.imu.back().utime - record.imu.front().utime) * kMicrosecond);
   for (const evaluation::RunResult& run : earlier.runs)
-    if (run.run == record.run) settings.noise_density_mps2_rthz = run.noise_density_mps2_rthz;
+    if (run.run == record.run) {
+      settings.noise_density_mps2_rthz = run.noise_density_mps2_rthz;
+      settings.heave_bound_m[run.method] = run.heave_bound_m;
+    }
   return settings;
 }
 

@@ -119,6 +119,10 @@ TEST(Program, ReportsCampaignsOfWavesAndOfSeasAndHoldsThemSideBySide) {
   EXPECT_TRUE(std::filesystem::exists(temporary / "sea/figures/sea-states.png"));
   EXPECT_NE(bytes_of(temporary / "sea/report.html").find("% of Hm0"), std::string::npos);
   EXPECT_EQ(bytes_of(temporary / "waves/report.html").find("% of Hm0"), std::string::npos);
+  const std::string judged = bytes_of(temporary / "sea/results.csv");
+  EXPECT_NE(judged.find("heave_bound_percent"), std::string::npos) << judged;
+  ASSERT_EQ(run(temporary, "evaluate sea --out anew").status, 0);  // which has the bound from the results that stand
+  EXPECT_EQ(bytes_of(temporary / "anew/results.csv"), judged);
   for (const std::string campaign : {"waves", "sea"}) {
     const Outcome compared = run(temporary, "report " + campaign + " --compare " + campaign + " --out pair.html");
     ASSERT_EQ(compared.status, 0) << compared.err;

@@ -132,12 +132,19 @@ TEST(Results, SeaStateAndDirectionStandToTheRightOnlyWhereKnown) {
   CampaignResults c = campaign();
   for (auto& r : c.runs) r.seas.clear();
   EXPECT_EQ(results_csv(cells_of(c.runs)).find("hm0_cm"), std::string::npos);
+  EXPECT_EQ(results_csv(cells_of(c.runs)).find("heave_bound"), std::string::npos);
+  c.runs[0].heave_bound_m = 0.003;
+  c.runs[0].true_hm0_m = 1.5;
   c.runs[0].seas.push_back({.sea = {.hm0_m = 1.5, .mean_direction_rad = 350 * kDegree}, .true_hm0_m = 1.5});
   c.runs[0].seas.push_back({.sea = {.hm0_m = 1.5, .mean_direction_rad = 20 * kDegree}, .true_hm0_m = 1.5});
   const auto cells = cells_of(c.runs);
+  EXPECT_NEAR(cells[2].heave_bound_m, 0.003, 1e-12);
+  EXPECT_TRUE(std::isnan(cells[0].heave_bound_m));
   EXPECT_NEAR(cells[2].sea.sea.mean_direction_rad / kDegree, 5, 1e-9);
   const std::string text = results_csv(cells);
   EXPECT_NE(text.find(",hm0_cm,true_hm0_cm,hm0_error_percent,"), std::string::npos) << text;
+  EXPECT_NE(text.find(",heave_bound_percent"), std::string::npos) << text;
+  EXPECT_NE(text.find(",0.2000"), std::string::npos) << text;  // 0.003 of 1.5 m
   EXPECT_NE(text.find(",mean_direction_deg,spread_deg,"), std::string::npos) << text;
 }
 

@@ -136,6 +136,18 @@ TEST(RunJudge, StatesTheBoundOfTheOrderedPeriod) {
   EXPECT_NEAR(judge.finish().at(0).statistics.bound_std_m, dense_height_bound_m(kPeriod, 3e-3), 1e-9);
 }
 
+TEST(RunJudge, PassesOnTheBoundOfHeaveToTheMethodItIsMeantFor) {
+  RunJudge judge("run", {.heave_bound_m = {{"m", 0.004}}});
+  play(judge, [&](std::int64_t t) {
+    if (t != 18 * kSecond) return;
+    judge.add("m", wave_at(t, 0.58));
+    judge.add("other", wave_at(t, 0.58));
+  });
+  const auto results = judge.finish();
+  EXPECT_EQ(results.at(0).heave_bound_m, 0.004);
+  EXPECT_TRUE(std::isnan(results.at(1).heave_bound_m));
+}
+
 // Any program may publish: nonsense is counted as excluded, never followed.
 TEST(RunJudge, IsNotLedAstrayByNonsenseOnTheBus) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kHuge = 1e300;
