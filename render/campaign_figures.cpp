@@ -99,7 +99,7 @@ std::vector<NamedFigure> result_figures(const evaluation::CampaignResults& resul
     figures.push_back({"sea-states", sea_states_figure(results)});
     figures.push_back({"sea-heave-map", sea_heave_map_figure(results)});
   } else {
-    figures.push_back({"paper-table-2", table2_figure(results)});
+    figures.push_back({shows_published(results) ? "paper-table-2" : "mean-heights", table2_figure(results)});
     figures.push_back({"error-map", error_map_figure(results)});
     figures.push_back({"std-map", std_map_figure(results)});
   }

@@ -29,7 +29,7 @@ struct FigureOptions {
 struct FigureInfo {
   std::string_view stem, group, caption;
 };
-inline constexpr std::array<FigureInfo, 19> kFigureOrder = {{
+inline constexpr std::array<FigureInfo, 20> kFigureOrder = {{
     {"rig", "The rig",
      "The rig in the run of the figures below: the arm turns, the gondola swings; the water is the wave that "
      "it "
@@ -52,6 +52,8 @@ inline constexpr std::array<FigureInfo, 19> kFigureOrder = {{
      "Sea states: error of the heave, of the significant height Hm0 and of the mean period Tm02."},
     {"sea-heave-map", "Accuracy", "Error of the heave over peak period and Hm0."},
     {"sea-trace", "Accuracy", "Heave of each method beside the true one, and its error."},
+    {"mean-heights", "Accuracy",
+     "Mean height and scatter of single waves in every setting, with the physical limit of single waves."},
     {"error-map", "Accuracy", "Error of the mean wave height over period and height."},
     {"std-map", "Accuracy",
      "Standard deviation of single waves over period and height, the physical "

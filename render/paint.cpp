@@ -1,6 +1,9 @@
 // Draws a planned figure, from the background to the labels.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "render/axis.h"
 #include "render/figure_writer.h"
@@ -104,20 +107,57 @@ void draw_polar_axes(const PanelPlan& p, const PanelView& v) {
   v.painter.stroke(arc(v.centre(), v.radius_px(), 0, 2 * std::numbers::pi), ink, 0.6F * v.pt);
 }
 
-// Over the data, along the ray that compass and degree labels leave free.
+// Whether a sector of the panel's bars lies under a pixel.
+bool on_sector(const PanelView& v, Vec2 pixel) {
+  const double dx = static_cast<double>(pixel.x - v.centre().x), dy = static_cast<double>(v.centre().y - pixel.y);
+  const double angle = std::atan2(dx, dy), share = std::hypot(dx, dy) / static_cast<double>(v.radius_px());
+  for (const Mark& mark : v.panel.marks) {
+    const auto* bars = std::get_if<Bars>(&mark);
+    if (bars == nullptr) continue;
+    for (std::size_t i = 0; i < std::min(bars->at.size(), bars->value.size()); ++i)
+      if (std::abs(std::remainder(bars->at[i] - angle, 2 * std::numbers::pi)) < 0.5 * bars->width &&
+          share < v.y.share(bars->value[i]))
+        return true;
+  }
+  return false;
+}
+
+// Over the data, along one of the eight rays that compass and degree labels leave free: the one with the least data.
 void draw_polar_radii(const PanelPlan& p, const PanelView& v) {
-  const std::string text = axis_text(p.panel.y, p.y_ticks);
+  struct Label {
+    std::string text;
+    float distance_px, half_px;
+  };
   const float size = v.tick_text_px();
+  std::vector<Label> labels;
   for (const Tick& t : p.y_ticks.major) {
     const float share = static_cast<float>(p.y.share(t.value));
     if (share < 0.1F) continue;
     const bool last = &t == &p.y_ticks.major.back();
     const std::string label = last && !p.panel.y.unit.empty() ? t.label + " " + p.panel.y.unit : t.label;
-    const Vec2 at = v.polar_at(22.5 * std::numbers::pi / 180, share * v.radius_px());
-    const float half = 0.5F * v.fonts.width_px(label, size) + 1.5F * v.pt;
-    v.painter.fill_rect({at.x - half, at.y - 0.6F * size, at.x + half, at.y + 0.6F * size},
-                        with_alpha(v.colors().panel, 0.75F));
-    v.painter.text(at, label,
+    labels.push_back({label, share * v.radius_px(), 0.5F * v.fonts.width_px(label, size) + 1.5F * v.pt});
+  }
+  const auto box_at = [&](const Label& label, double angle) {
+    const Vec2 at = v.polar_at(angle, label.distance_px);
+    return Rect{at.x - label.half_px, at.y - 0.6F * size, at.x + label.half_px, at.y + 0.6F * size};
+  };
+  double best = 0;
+  int least = std::numeric_limits<int>::max();
+  for (int k = 0; k < 8; ++k) {
+    const double angle = (22.5 + 45 * k) * std::numbers::pi / 180;
+    int covered = 0;
+    for (const Label& label : labels) {
+      const Rect box = box_at(label, angle);
+      for (const float x : {box.left, 0.5F * (box.left + box.right), box.right})
+        for (const float y : {box.top, box.bottom}) covered += on_sector(v, {x, y});
+    }
+    if (covered >= least) continue;
+    least = covered;
+    best = angle;
+  }
+  for (const Label& label : labels) {
+    v.painter.fill_rect(box_at(label, best), with_alpha(v.colors().panel, 0.75F));
+    v.painter.text(v.polar_at(best, label.distance_px), label.text,
                    {.size_px = size, .color = v.colors().ink, .h = HAlign::kCenter, .v = VAlign::kMiddle});
   }
 }

@@ -9,6 +9,8 @@ namespace waverig::render {
 // with standard deviation, and the standard deviation of single waves beside
 // the physical limit.
 Figure table2_figure(const evaluation::CampaignResults& results);
+// Whether a setting of the campaign is one of the published ones; the chart names the paper where it is.
+bool shows_published(const evaluation::CampaignResults& results);
 
 // Period x height, a map a method: error of the mean height; standard deviation
 // with the limit beside.

@@ -14,11 +14,20 @@ namespace waverig::render {
 using evaluation::CampaignResults;
 using evaluation::CellResult;
 
+bool shows_published(const CampaignResults& results) {
+  return std::ranges::any_of(settings_of(results), [](const Setting& s) {
+    return published_cell(s.period_s, s.height_m) != nullptr;
+  });
+}
+
 Figure table2_figure(const CampaignResults& results) {
   const std::vector<Setting> settings = settings_of(results);
   const std::vector<std::string> methods = methods_of(results);
-  Figure figure{.title = "Wave heights: published, and measured on this rig",
-                .subtitle = "Lee, Lee, Heo 2014, Table 2, beside campaign \"" + results.name + "\"",
+  const bool published = shows_published(results);
+  Figure figure{.title = published ? "Wave heights: published, and measured on this rig"
+                                   : "Wave heights: set, and measured on this rig",
+                .subtitle = (published ? "Lee, Lee, Heo 2014, Table 2, beside campaign \"" : "campaign \"") +
+                            results.name + "\"",
                 .share_x = true,
                 .height_mm = 130};
   Panel top{.title =

@@ -38,6 +38,13 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
+// Some tell the sea alone, or its direction: tables of single waves have nothing of theirs.
+bool gives_waves(const CampaignResults& results, const std::string& method) {
+  return std::ranges::any_of(results.runs, [&](const RunResult& run) {
+    return run.method == method && (!run.waves.empty() || run.excluded_waves > 0);
+  });
+}
+
 std::string intro(const CampaignResults& results) {
   std::string out = fmt::format(
       "<header>\n<h1>Wave measurement campaign \u201C{}\u201D</h1>\n"
@@ -137,6 +144,7 @@ std::string excluded_section(const CampaignResults& results, const fs::path& dir
       "edge. Counted, but flagged: named.",
       {"Run", "Method", "Waves counted", "Left out", "Flags of the run", "Flagged waves"});
   for (const RunResult& run : results.runs) {
+    if (!gives_waves(results, run.method)) continue;
     std::map<std::string, int> flagged;
     for (const evaluation::JudgedWave& wave : run.waves) {
       for (const std::string& name : evaluation::flag_names(wave.wave.flags)) ++flagged[name];
@@ -188,10 +196,17 @@ std::string runs_section(const CampaignResults& results) {
     HtmlTable table(fmt::format("{}, {}", setting_text(cell), cell.method),
                     {"Run", "Repeat", "Waves", "Mean cm", "True mean cm", "Std cm", "RMSE cm",
                      "Largest error cm", "Recording"});
+    HtmlTable recordings(fmt::format("{}, {}", setting_text(cell), cell.method), {"Run", "Repeat", "Recording"});
+    const bool waves_told = gives_waves(results, cell.method);
     std::string waves;
     for (const RunResult& run : results.runs) {
       if (run.period_s != cell.period_s || run.height_m != cell.height_m || run.method != cell.method)
         continue;
+      const HtmlCell recording = inner_cell(html_link("runs/" + run.run + ".lcm", run.run + ".lcm"));
+      if (!waves_told) {
+        recordings.add_row({text_cell(run.run), number_cell(run.repeat + 1, 0), recording});
+        continue;
+      }
       const evaluation::JudgedWave* worst = nullptr;
       HtmlTable list(
           fmt::format("Single waves of {}, {}", run.run, run.method),
@@ -220,16 +235,17 @@ std::string runs_section(const CampaignResults& results) {
                      worst == nullptr ? number_cell(kAuto, 2)
                                       : number_cell(cm(worst->wave.height_m - worst->true_height_m), 2,
                                                     fmt::format("#{}", wave_id(run, *worst))),
-                     inner_cell(html_link("runs/" + run.run + ".lcm", run.run + ".lcm"))});
+                     recording});
       waves += fmt::format(
           "<details class=\"waves\" id=\"{}\"><summary>{}, {}: {} "
           "waves</summary><div>{}</div></details>\n",
           run_id(run), html_text(run.run), html_text(run.method), run.waves.size(), list.html());
     }
-    if (table.empty()) continue;
+    const HtmlTable& shown = waves_told ? table : recordings;
+    if (shown.empty()) continue;
     out += fmt::format("<section id=\"{}\"><h3>{}, {}</h3>\n", cell_id(cell), html_text(setting_text(cell)),
                        html_text(cell.method)) +
-           table.html() + waves + "</section>\n";
+           shown.html() + waves + "</section>\n";
   }
   return out + "</section>\n";
 }

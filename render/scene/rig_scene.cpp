@@ -55,12 +55,6 @@ void main() {
   color = vec4(mix(min(shade, vec3(1.0)), haze.rgb, far), min(1.0, paint.a + edge + gloss));
 })";
 
-// Sizes of the drawn rig that no record tells, in metres; the arm's length is
-// the run's.
-constexpr double kGondolaWidth = 0.22, kGondolaHeight = 0.15, kHanger = 0.16;
-
-const Vector3d kLamp = Vector3d(-0.45, -0.62, 0.75).normalized();
-
 Eigen::Matrix4d perspective(double fov_rad, double aspect, double near_m, double far_m) {
   Eigen::Matrix4d m = Eigen::Matrix4d::Zero();
   const double f = 1 / std::tan(0.5 * fov_rad);
@@ -95,20 +89,6 @@ Eye eye_of(const SceneSettings& s, double radius_m) {
   return {target + distance * Vector3d(ch * std::sin(s.view_azimuth_rad), -ch * std::cos(s.view_azimuth_rad),
                                        std::sin(s.view_height_rad)),
           target};
-}
-
-Vector3d arm_tip(const RigMotion& motion, const RigInstant& at) {
-  return motion.radius_m() * Vector3d(std::cos(at.arm_angle_rad), 0, std::sin(at.arm_angle_rad));
-}
-
-// The gondola hangs on the tip; the sensor sits in it. swing: about the shaft's
-// direction.
-Isometry3d gondola_pose(const Vector3d& pivot, const Quaterniond& q_SB) {
-  Isometry3d pose = Isometry3d::Identity();
-  pose.translation() = pivot;
-  // The body's z points down, the scene's up.
-  pose.linear() = q_SB.toRotationMatrix() * Vector3d(1, -1, -1).asDiagonal();
-  return pose;
 }
 
 }  // namespace
@@ -151,7 +131,7 @@ struct RigScene::Buffers {
 };
 
 RigScene::RigScene(Canvas& canvas, const SceneSettings& settings)
-    : canvas_(canvas), settings_(settings), project_(Eigen::Matrix4d::Identity()) {
+    : canvas_(canvas), settings_(settings), parts_(settings.theme), project_(Eigen::Matrix4d::Identity()) {
   canvas.context().make_current();
   buffers_ = std::make_unique<Buffers>();
 }
@@ -161,151 +141,6 @@ RigScene::~RigScene() { canvas_.context().make_current(); }
 void RigScene::prepare_fonts(float text_px) {
   canvas_.fonts().require(text_px, false);
   canvas_.fonts().require(text_px, true);
-}
-
-void RigScene::build(const RigMotion& motion, const RigInstant& at) {
-  solid_.clear();
-  clear_.clear();
-  if (motion.on_sea())
-    build_buoy(motion, at);
-  else
-    build_rig(motion, at);
-}
-
-// The floor, tiled by half metres, and what stands on it keeps from the lamp.
-void RigScene::add_floor(double reach, double floor_z) {
-  const bool dark = settings_.theme == Theme::kDark;
-  const Color floor = dark ? rgb(0x39424D) : rgb(0xDDE2E7),
-              joint = mixed(floor, rgb(0x000000), dark ? 0.35F : 0.12F);
-  const Mesh things = solid_;
-  Isometry3d ground = Isometry3d::Identity();
-  ground.translation() = Vector3d(0, 0, floor_z - 0.01);
-  solid_.add_box(ground, {16 * reach, 16 * reach, 0.02}, floor);
-  for (double at_m = -8 * reach; at_m < 8 * reach; at_m += 0.5) {
-    ground.translation() = Vector3d(at_m, 0, floor_z);
-    solid_.add_box(ground, {0.008, 16 * reach, 0.002}, joint);
-    ground.translation() = Vector3d(0, at_m, floor_z);
-    solid_.add_box(ground, {16 * reach, 0.008, 0.002}, joint);
-  }
-  solid_.add_shadow(things, kLamp, floor_z + 0.004, mixed(floor, rgb(0x000000), 0.28F));
-}
-
-// surface: rows of `columns` points, the nearest row first; its front goes down to the floor.
-void RigScene::add_water(const std::vector<Vector3d>& surface, std::size_t columns, double floor_z) {
-  const bool dark = settings_.theme == Theme::kDark;
-  std::vector<Vector3d> front;
-  for (std::size_t column = 0; column < columns; ++column)
-    front.emplace_back(surface[column].x(), surface[column].y(), floor_z);
-  front.insert(front.end(), surface.begin(), surface.begin() + static_cast<std::ptrdiff_t>(columns));
-  clear_.add_sheet(surface, columns, dark ? rgb(0x2A7FB8, 0.80F) : rgb(0x3F97D0, 0.80F));
-  clear_.add_sheet(front, columns, dark ? rgb(0x124A70, 0.82F) : rgb(0x2E7DB3, 0.72F));
-}
-
-// The water passes through the buoy: beside it stands what came by before and what comes by after, a period
-// as long as a wave of the rig's.
-void RigScene::build_buoy(const RigMotion& motion, const RigInstant& at) {
-  const double r = motion.radius_m(), reach = r + 0.45, floor_z = -(2.2 * r + 0.75), size = 0.16 * reach;
-  const auto add_hull = [&](Mesh& mesh, const Isometry3d& pose, double grown, Color hull, Color mast) {
-    const auto place = [&](double up) { return Vector3d(pose * Vector3d(0, 0, up * size)); };
-    mesh.add_rod(place(-0.7), place(0.7), 1.1 * grown * size, hull);
-    mesh.add_rod(place(0.7), place(2.6), 0.16 * grown * size, mast);
-    mesh.add_rod(place(2.6), place(2.9), 0.34 * grown * size, mast);
-  };
-  add_hull(solid_, gondola_pose(at.sensor_m, at.q_SB), 1, rgb(0xF2B705), rgb(0x5C6773));
-  add_floor(reach, floor_z);
-  if (at.estimated) {
-    const Vector3d shift(0, 0, at.estimated_heave_m - at.sensor_m.z());
-    const Color ghost = with_alpha(palette(settings_.theme, 1), 0.30F);
-    add_hull(clear_, gondola_pose(at.sensor_m + shift, at.estimated_q_SB), 1.08, ghost, ghost);
-  }
-  constexpr std::size_t kColumns = 160, kRows = 12;
-  const double half_width = 5 * reach, near_y = -0.5 * reach, far_y = 2.2 * reach;
-  const double seconds_per_m = 0.55 / std::max(r, 0.12) * motion.run().period_s / (2 * std::numbers::pi);
-  std::array<double, kColumns> x{}, z{};
-  for (std::size_t column = 0; column < kColumns; ++column) {
-    x[column] = -half_width + 2 * half_width * static_cast<double>(column) / (kColumns - 1);
-    z[column] = motion.at(at.time_s + seconds_per_m * (x[column] - at.sensor_m.x())).sensor_m.z();
-  }
-  std::vector<Vector3d> surface;
-  for (std::size_t row = 0; row < kRows; ++row) {
-    const double y = near_y + (far_y - near_y) * static_cast<double>(row) / (kRows - 1);
-    for (std::size_t column = 0; column < kColumns; ++column) surface.emplace_back(x[column], y, z[column]);
-  }
-  add_water(surface, kColumns, floor_z);
-}
-
-void RigScene::build_rig(const RigMotion& motion, const RigInstant& at) {
-  const Color steel = rgb(0x9AA5B1), frame = rgb(0x5C6773), arm = rgb(0xD9822B), gondola = rgb(0xE9EDF2),
-              sensor = rgb(0x0B6E4F);
-  const double r = motion.radius_m();
-  const double floor_z = -(r + 0.75), depth_y = 0.34;
-
-  // 1. The stand: two A-frames behind the arm's plane, and the shaft between them and the arm.
-  for (const double y : {depth_y, depth_y + 0.28}) {
-    for (const double side : {-1.0, 1.0})
-      solid_.add_rod({side * 0.62 * (r + 0.4), y, floor_z}, {0, y, 0}, 0.03, frame);
-    solid_.add_rod({-0.34 * (r + 0.4), y, 0.55 * floor_z}, {0.34 * (r + 0.4), y, 0.55 * floor_z}, 0.02,
-                   frame);
-  }
-  solid_.add_rod({0, -0.06, 0}, {0, depth_y + 0.34, 0}, 0.035, steel);
-  Isometry3d motor = Isometry3d::Identity();
-  motor.translation() = Vector3d(0, depth_y + 0.42, 0);
-  solid_.add_box(motor, {0.16, 0.2, 0.16}, rgb(0x37474F));
-
-  // 2. The arm with its counterweight.
-  const Vector3d tip = arm_tip(motion, at), along(std::cos(at.arm_angle_rad), 0, std::sin(at.arm_angle_rad));
-  Isometry3d beam = Isometry3d::Identity();
-  beam.linear() = Eigen::AngleAxisd(-at.arm_angle_rad, Vector3d::UnitY()).toRotationMatrix();
-  const double back = 0.16 + 0.25 * r;
-  beam.translation() = 0.5 * (r - back) * along;
-  solid_.add_box(beam, {r + back + 0.06, 0.045, 0.055}, arm);
-  Isometry3d weight = beam;
-  weight.translation() = -back * along;
-  solid_.add_box(weight, {0.11, 0.1, 0.13}, frame);
-  solid_.add_rod({0, -0.05, 0}, {0, 0.05, 0}, 0.055, steel);
-
-  // 3. The gondola, its hangers, and the sensor in it.
-  const Vector3d pivot = tip + Vector3d(0, -0.09, 0);
-  solid_.add_rod(tip + Vector3d(0, 0.05, 0), pivot + Vector3d(0, -0.14, 0), 0.014, steel);
-  const Isometry3d hang = gondola_pose(pivot, at.q_SB);
-  const auto in_gondola = [](const Isometry3d& pose, const Vector3d& place) {
-    Isometry3d out = pose;
-    out.translation() = pose * place;
-    return out;
-  };
-  for (const double x : {-0.4, 0.4})
-    solid_.add_rod(pivot, hang * Vector3d(x * kGondolaWidth, 0, -kHanger), 0.009, steel);
-  const Vector3d body(0, 0, -kHanger - 0.5 * kGondolaHeight);
-  solid_.add_box(in_gondola(hang, body), {kGondolaWidth, 0.16, kGondolaHeight}, gondola);
-  solid_.add_box(in_gondola(hang, body + Vector3d(0, -0.085, 0)), {0.075, 0.012, 0.05}, sensor);
-
-  // 4. The estimate: the gondola where the method believes it to be.
-  if (at.estimated) {
-    const Vector3d shift(0, 0, at.estimated_heave_m - at.sensor_m.z());
-    const Isometry3d believed = gondola_pose(pivot + shift, at.estimated_q_SB);
-    clear_.add_box(in_gondola(believed, body), {kGondolaWidth * 1.08, 0.175, kGondolaHeight * 1.08},
-                   with_alpha(palette(settings_.theme, 1), 0.30F));
-  }
-
-  // 5. The floor.
-  const double reach = r + 0.45;
-  add_floor(reach, floor_z);
-
-  // 6. The water in a flume behind: the trochoidal wave (Gerstner 1804) whose particle the gondola is, as
-  // high as true.
-  constexpr std::size_t kColumns = 120, kRows = 12;
-  const double k = 0.55 / std::max(r, 0.12), level = -kHanger - 0.5 * kGondolaHeight;
-  const double half_width = 5 * reach, near_y = depth_y + 0.62, far_y = near_y + 1.6 * reach;
-  std::vector<Vector3d> surface;
-  for (std::size_t row = 0; row < kRows; ++row) {
-    const double y = near_y + (far_y - near_y) * static_cast<double>(row) / (kRows - 1);
-    for (std::size_t column = 0; column < kColumns; ++column) {
-      const double x0 = -half_width + 2 * half_width * static_cast<double>(column) / (kColumns - 1);
-      const double phase = at.arm_angle_rad + k * x0;
-      surface.emplace_back(x0 + r * std::cos(phase), y, level + r * std::sin(phase));
-    }
-  }
-  add_water(surface, kColumns, floor_z);
 }
 
 void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const RenderTarget& target,
@@ -322,7 +157,7 @@ void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const Re
   // The circle of the arm fits into the narrower side.
   const double fov = 2 * std::atan(std::tan(0.5 * 40 * std::numbers::pi / 180) * std::max(1.0, 1.0 / aspect));
   project_ = perspective(fov, aspect, 0.1, 60) * look_at(eye.eye, eye.target);
-  build(motion, instant);
+  parts_.build(motion, instant);
 
   const Color sky = settings_.theme == Theme::kDark ? rgb(0x14181D) : rgb(0xF3F6F9);
   large_->bind();
@@ -337,18 +172,17 @@ void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const Re
   glUseProgram(buffers_->program);
   const Eigen::Matrix4f project = project_.cast<float>();
   glUniformMatrix4fv(glGetUniformLocation(buffers_->program, "project"), 1, GL_FALSE, project.data());
-  const Eigen::Vector3f eye_f = eye.eye.cast<float>(),
-                        lamp = Eigen::Vector3f(-0.45F, -0.62F, 0.75F).normalized();
+  const Eigen::Vector3f eye_f = eye.eye.cast<float>(), lamp = SceneParts::towards_lamp().cast<float>();
   glUniform3fv(glGetUniformLocation(buffers_->program, "eye"), 1, eye_f.data());
   glUniform3fv(glGetUniformLocation(buffers_->program, "lamp"), 1, lamp.data());
   const double distance = (eye.eye - eye.target).norm();
   glUniform4f(glGetUniformLocation(buffers_->program, "haze"), sky.r, sky.g, sky.b,
               static_cast<float>(1.25 * distance));
   glDisable(GL_BLEND);
-  buffers_->draw(solid_);
+  buffers_->draw(parts_.solid);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  buffers_->draw(clear_);
+  buffers_->draw(parts_.clear);
   glDisable(GL_DEPTH_TEST);
 
   // Two by two pixels become one: the linear filter of the blit averages

@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "render/canvas.h"
-#include "render/scene/mesh.h"
 #include "render/scene/rig_motion.h"
+#include "render/scene/scene_parts.h"
 
 namespace waverig::render {
 
@@ -36,17 +36,12 @@ class RigScene {
 
  private:
   struct Buffers;
-  void build(const RigMotion& motion, const RigInstant& instant);
-  void build_rig(const RigMotion& motion, const RigInstant& instant);
-  void build_buoy(const RigMotion& motion, const RigInstant& instant);
-  void add_floor(double reach_m, double floor_m);
-  void add_water(const std::vector<Eigen::Vector3d>& surface, std::size_t columns, double floor_m);
   void draw_labels(const RigMotion& motion, const RigInstant& instant, const RenderTarget& target,
                    const Rect& area, float text_px);
 
   Canvas& canvas_;
   SceneSettings settings_;
-  Mesh solid_, clear_;       // opaque, and what is seen through
+  SceneParts parts_;
   Eigen::Matrix4d project_;  // scene to clip space, y down
   std::unique_ptr<Buffers> buffers_;
   std::unique_ptr<RenderTarget> large_;

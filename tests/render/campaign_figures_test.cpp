@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "lcmtypes/error.h"
 #include "render/figures/accuracy.h"
@@ -36,9 +37,28 @@ bool holds(const std::vector<NamedFigure>& figures, std::string_view stem) {
   return std::any_of(figures.begin(), figures.end(), [&](const NamedFigure& f) { return f.stem == stem; });
 }
 
+// A campaign that has no setting of the paper's.
+evaluation::CampaignResults elsewhere() {
+  evaluation::CampaignResults results = test::example_campaign();
+  for (auto& cell : results.cells) cell.period_s += 0.5;
+  for (auto& run : results.runs) run.period_s += 0.5;
+  return results;
+}
+
+TEST(CampaignFigures, NameThePaperOnlyWhereASettingOfItsIsShown) {
+  const Figure beside = table2_figure(test::example_campaign()), alone = table2_figure(elsewhere());
+  EXPECT_NE((beside.title + beside.subtitle).find("published"), std::string::npos);
+  EXPECT_NE(beside.subtitle.find("Lee"), std::string::npos);
+  for (const char* word : {"published", "Lee"}) EXPECT_EQ((alone.title + alone.subtitle).find(word), std::string::npos);
+  EXPECT_TRUE(holds(result_figures(test::example_campaign()), "paper-table-2"));
+  EXPECT_FALSE(holds(result_figures(elsewhere()), "paper-table-2"));
+  EXPECT_TRUE(holds(result_figures(elsewhere()), "mean-heights"));
+}
+
 TEST(CampaignFigures, AreAllThoseThatTheReportNames) {
   std::vector<NamedFigure> figures = all_figures();
   for (NamedFigure& figure : sea_figures()) figures.push_back(std::move(figure));
+  for (NamedFigure& figure : result_figures(elsewhere())) figures.push_back(std::move(figure));
   for (const FigureInfo& info : kFigureOrder) {
     if (info.stem == "rig" || info.stem == "buoy") continue;  // no plots
     EXPECT_TRUE(std::any_of(figures.begin(), figures.end(), [&](const NamedFigure& f) {
@@ -183,6 +203,39 @@ TEST(Rose, SharesAddUpToHundredPercent) {
   }
   EXPECT_NEAR(total, 100, 1e-9);
   EXPECT_NEAR(std::get<Bars>(panel.marks.back()).value[0], 75, 1e-9) << "north, from both sides of zero";
+}
+
+TEST(Rose, TheHighestSeaCountsWhereItIsTheUpperEdgeOfAClass) {
+  for (const double highest_m : {0.5, 1.0, 2.0, 2.5, 4.0, 10.0}) {
+    const Panel panel = rose_panel("", {1.0, 2.0}, {0.1 * highest_m, highest_m});
+    double total = 0;
+    for (const Mark& mark : panel.marks)
+      for (std::size_t i = 0; i < std::get<Bars>(mark).value.size(); ++i)
+        total += std::get<Bars>(mark).value[i] - std::get<Bars>(mark).base[i];
+    EXPECT_NEAR(total, 100, 1e-9) << highest_m;
+  }
+}
+
+// Where a text of the rose stands on the page, from its vectors.
+std::pair<double, double> place_of(const std::string& svg, const std::string& text) {
+  const std::regex pattern("translate\\(([0-9.]+) ([0-9.]+)\\)[^>]*>" + text + "</text>");
+  std::smatch match;
+  if (!std::regex_search(svg, match, pattern)) return {kAuto, kAuto};
+  return {std::stod(match[1]), std::stod(match[2])};
+}
+
+TEST(Rose, RingsAreLabelledWhereNoSectorIs) {
+  Canvas canvas;
+  // Ring labels stand at 22.5 degrees where that is free, else at the first free one of the eight between the names.
+  for (const auto& [from_deg, label_deg] : {std::pair{180.0, 22.5}, {22.5, 67.5}}) {
+    Figure figure{.width_mm = 80, .height_mm = 80};
+    figure.panels.push_back(rose_panel("", {from_deg * kDegree}, {1}));
+    const std::string svg = svg_text(figure, canvas.fonts(), {});
+    const auto [north_x, north_y] = place_of(svg, "N");
+    const auto [east_x, east_y] = place_of(svg, "E");
+    const auto [x, y] = place_of(svg, "[0-9]+ %");
+    EXPECT_NEAR(std::atan2(x - north_x, east_y - y) / kDegree, label_deg, 1.0);
+  }
 }
 
 TEST(Methods, BaselineComesFirst) {

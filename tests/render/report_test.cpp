@@ -11,6 +11,7 @@
 #include "lcmtypes/error.h"
 #include "render/campaign_figures.h"
 #include "render/report/html.h"
+#include "render/report/report_parts.h"
 #include "tests/render/example_campaign.h"
 #include "tests/render/picture.h"
 
@@ -49,6 +50,31 @@ TEST(Report, AsksNothingFromOutside) {
   EXPECT_EQ(html.find("url("), std::string::npos);
   EXPECT_EQ(html.find("@import"), std::string::npos);
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+}
+
+// Its direction stands in a table of its own; it has no single waves that could be listed.
+TEST(Report, ListsNoSingleWavesOfAMethodThatGivesNone) {
+  Example example;
+  evaluation::CellResult cell = example.results.cells.front();
+  evaluation::RunResult run = example.results.runs.front();
+  cell.method = run.method = "directional";
+  cell.statistics = {};
+  cell.sea.sea.spread_rad = 0.1;
+  run.statistics = {};
+  run.waves.clear();
+  run.excluded_waves = 0;
+  example.results.cells.push_back(cell);
+  example.results.runs.push_back(run);
+  const std::string html = example.html();
+  EXPECT_EQ(html.find(", directional: 0 waves"), std::string::npos);
+  EXPECT_EQ(html.find("Single waves of " + run.run + ", directional"), std::string::npos);
+  EXPECT_EQ(html.find("#run-" + run.run + "-directional"), std::string::npos);
+  const std::size_t section = html.find("<section id=\"" + cell_id(cell) + "\">");   // the direction's numbers lead here
+  ASSERT_NE(section, std::string::npos);
+  EXPECT_NE(html.find("runs/" + run.run + ".lcm", section), std::string::npos);
+  const std::vector<std::string> ids = all(html, " id=\"([^\"]*)\"");
+  const std::set<std::string> known(ids.begin(), ids.end());
+  for (const std::string& link : all(html, "href=\"#([^\"]*)\"")) EXPECT_TRUE(known.contains(link)) << link;
 }
 
 TEST(Report, LinksLeadToWhereTheyPromise) {
