@@ -34,6 +34,7 @@ class HeaveBound {
   // Everything is unknown (NaN) where the noise is not positive.
   explicit HeaveBound(const HeaveBoundSettings& settings);
 
+  // lag_s >= 0, 0 <= from_s <= duration_s.
   double heave_std_m() const;  // of the sea itself
   // Standard deviation of the error in the midst of an endless record, lag_s (to the nearest node) behind the
   // newest sample.
