@@ -21,7 +21,7 @@ struct Forward {
   std::vector<AttitudeCorrection> nodes;
 };
 
-Forward run(AttitudeFilter filter, const std::vector<ImuSample>& samples) {
+Forward run(AttitudeFilter& filter, const std::vector<ImuSample>& samples) {
   Forward forward;
   forward.samples.reserve(samples.size());
   for (const ImuSample& sample : samples) {
@@ -104,11 +104,12 @@ void correct_samples(const std::vector<ImuSample>& imu, const std::vector<Attitu
 }  // namespace
 
 std::vector<AttitudeSample> smooth_attitude(const std::vector<ImuSample>& imu,
-                                            const AttitudeSettings& settings) {
+                                            const AttitudeSettings& settings, AttitudeFilter* live) {
   if (imu.empty()) return {};
   AttitudeFilter filter(settings);
   for (int pass = 0;; ++pass) {
     Forward forward = run(filter, imu);
+    if (live) *live = filter;
     if (forward.nodes.empty()) return forward.samples;  // shorter than one correction
     correct_samples(imu, forward.nodes, backward(forward.nodes), settings, forward.samples);
     if (pass == 1) return forward.samples;

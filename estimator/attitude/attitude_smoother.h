@@ -10,7 +10,8 @@ namespace waverig::estimator {
 // One AttitudeSample per ImuSample, same utime. Samples in increasing utime (repeats and stragglers dropped).
 // Two passes, the second starting from the first's smoothed attitude and bias, so that the start is as good
 // as the rest. Linear in time and memory; an empty record gives an empty answer.
+// live, where given, becomes the filter as it stands after the last sample, to go on with.
 std::vector<AttitudeSample> smooth_attitude(const std::vector<ImuSample>& samples,
-                                            const AttitudeSettings& settings);
+                                            const AttitudeSettings& settings, AttitudeFilter* live = nullptr);
 
 }  // namespace waverig::estimator

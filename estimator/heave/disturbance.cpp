@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lcmtypes/flags.h"
 
@@ -13,10 +14,11 @@ constexpr double kOffsetCorrelation_s = 0.05;  // of what a turned offset does t
 constexpr double kSteadyTilt_rad = 0.25 * kDegree;
 constexpr double kSaturatedNoise_m2ps3 = 1.0;  // several m/s^2 for tenths of a second
 constexpr double kSlowestSea_radps = 0.2;
+constexpr double kImprobable = 3;  // standard deviations
 
 double square(double x) { return x * x; }
 
-double offset_mps2(const Motion& motion, const SensorKnowledge& sensor) {
+double turned_mps2(const Motion& motion, const SensorKnowledge& sensor) {
   return std::max(
       std::hypot(sensor.accel_bias_sigma_mps2, sensor.accel_misalignment_sigma_rad * sensor.gravity_mps2),
       std::abs(motion.excess_mps2));
@@ -42,7 +44,7 @@ double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, dou
 double turned_offset_m2ps3(const AttitudeSample& attitude, const Motion& motion,
                            const SensorKnowledge& sensor) {
   const Vector3d down_B = attitude.q_NB.conjugate() * Vector3d::UnitZ();
-  return kOffsetCorrelation_s * square(offset_mps2(motion, sensor)) * (down_B - motion.down_B).squaredNorm();
+  return kOffsetCorrelation_s * square(turned_mps2(motion, sensor)) * (down_B - motion.down_B).squaredNorm();
 }
 
 void Motion::follow(const AttitudeSample& attitude, double share) {
@@ -53,10 +55,20 @@ void Motion::follow(const AttitudeSample& attitude, double share) {
   excess_mps2 += share * (attitude.a_N.z() - excess_mps2);
 }
 
+double offset_sigma_mps2(const Motion& motion, const SeaModel& sea, double elapsed_s,
+                         const SensorKnowledge& s) {
+  const double known =
+      2 * std::hypot(s.accel_bias_sigma_mps2, s.accel_scale_sigma * s.gravity_mps2, s.gravity_sigma_mps2);
+  // A mean acceleration is the change of speed over the time.
+  const double speed_mps = sea.mean_frequency_radps * std::sqrt(sea.heave_variance_m2());
+  const double chance = std::hypot(known, std::numbers::sqrt2 * speed_mps / elapsed_s);
+  return std::abs(motion.excess_mps2) > kImprobable * chance ? std::hypot(known, motion.excess_mps2) : known;
+}
+
 double systematic_variance_m2(const SeaModel& sea, const Motion& motion, const SensorKnowledge& s) {
   const double w2 = square(std::max(sea.mean_frequency_radps, kSlowestSea_radps));
   return sea.heave_variance_m2() * (square(s.accel_scale_sigma) + motion.tilt_variance_rad2) +
-         motion.leaning_variance_rad2 * square(offset_mps2(motion, s) / w2);
+         motion.leaning_variance_rad2 * square(turned_mps2(motion, s) / w2);
 }
 
 }  // namespace waverig::estimator

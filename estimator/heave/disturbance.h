@@ -38,6 +38,11 @@ struct MeanDisturbance {
   double mean() const { return count > 0 ? sum_m2ps3 / count : 0.0; }
 };
 
+// Standard uncertainty of the mean vertical acceleration, after motion.excess_mps2 was found in a sea's
+// elapsed_s: twice what calibration and gravity leave, or the excess where they cannot have left it.
+double offset_sigma_mps2(const Motion& motion, const SeaModel& sea, double elapsed_s,
+                         const SensorKnowledge& sensor);
+
 // Variance of heave by calibration and attitude: scale; tilt error times horizontal path, which is about as
 // wide as heave is high; offset and misalignment of the sensor as the body leans over.
 double systematic_variance_m2(const SeaModel& sea, const Motion& motion, const SensorKnowledge& sensor);

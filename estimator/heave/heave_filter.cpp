@@ -6,8 +6,7 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25,
-                 kBiasVariance_m2ps4 = 0.1;        // nothing known
+constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25;  // nothing known
 constexpr double kMeasurementVariance_m2 = 1e-10;  // the path is exact; this keeps the algebra regular
 constexpr double kSurprising = 3;  // innovation squared over its variance, and what it is then taken to be
 constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
@@ -20,13 +19,12 @@ Eigen::Matrix3d drift_transition(double dt) {
   return F;
 }
 
-Eigen::Matrix3d unknown_drift() {
-  return Eigen::Vector3d(kPathVariance_m2, kSpeedVariance_m2ps2, kBiasVariance_m2ps4).asDiagonal();
-}
-
 }  // namespace
 
-HeaveFilter::HeaveFilter(const SeaModel& model) { begin(model, unknown_drift()); }
+HeaveFilter::HeaveFilter(const SeaModel& model, double offset_sigma_mps2) {
+  begin(model, Eigen::Vector3d(kPathVariance_m2, kSpeedVariance_m2ps2, offset_sigma_mps2 * offset_sigma_mps2)
+                   .asDiagonal());
+}
 
 void HeaveFilter::set_model(const SeaModel& model) {
   if (model.interval_s != model_.interval_s || model.order() != model_.order()) {
@@ -113,6 +111,7 @@ void HeaveFilter::update() {
   } else {
     surprise_ = 1 + kCalmDown * (surprise_ - 1);
   }
+  log_likelihood_ -= 0.5 * (std::log(S) + innovation * innovation / S);
   const Eigen::VectorXd gain = PH / S;
   z_ += innovation * gain.head(n);
   path_m_ -= innovation * gain[n];

@@ -14,7 +14,8 @@ namespace waverig::estimator {
 
 class HeaveFilter {
  public:
-  explicit HeaveFilter(const SeaModel& model);
+  // offset_sigma_mps2: standard uncertainty of the mean vertical acceleration, the sensor's offset.
+  HeaveFilter(const SeaModel& model, double offset_sigma_mps2);
   // Keeps the drift; where the nodes lie otherwise from now on, the older heaves are forgotten.
   void set_model(const SeaModel& model);
 
@@ -37,6 +38,7 @@ class HeaveFilter {
   // Heave at the node `lag` intervals ago, by all measurements since. lag < order.
   double lagged_heave_m(int lag) const { return z_[lag]; }
   double lagged_variance_m2(int lag) const { return P_(lag, lag); }
+  double log_likelihood() const { return log_likelihood_; }  // of all steps, but for a constant
   bool surprised() const { return roughness_ > kTooRough; }  // the model has become too small for the motion
   const SeaModel& model() const { return model_; }
   int order() const { return model_.order(); }
@@ -52,6 +54,7 @@ class HeaveFilter {
   double path_m_ = 0, speed_mps_ = 0, bias_mps2_ = 0;
   Eigen::MatrixXd P_, next_P_;
   static constexpr double kTooRough = 5;
+  double log_likelihood_ = 0;
   double roughness_ = 1;  // mean of the last innovations squared over the model's variance of them
   double surprise_ = 1;   // how many times the model's innovation variance the sea is found to have just now
 };

@@ -1,9 +1,13 @@
 #include "estimator/heave/realtime.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 
+#include "estimator/attitude/attitude_smoother.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
 
@@ -14,13 +18,17 @@ constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabo
 constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
 constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
-constexpr std::size_t kRepeated = 160;  // nodes: 40 s
-constexpr int kOldEnough = 120;         // fine nodes of one sea before another one is believed: half a minute
+constexpr double kRethought_s = 60;
+constexpr std::array kSwells = {0.002, 0.03, 0.5};  // relative variances, of which one is believed
+constexpr double kGuessWeight = 3;                  // periodograms of less than a minute tell little
+constexpr std::size_t kMostRethought = 60'000;      // samples
+constexpr int kOldEnough = 120;  // fine nodes of one sea before another one is believed: half a minute
 
 double square(double x) { return x * x; }
 
 SeaIdentifierSettings identifier_settings(const AttitudeSettings& attitude) {
   SeaIdentifierSettings s;
+  s.guess_weight = kGuessWeight;
   s.accel_noise_m2ps3 = square(attitude.accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
   return s;
 }
@@ -32,7 +40,7 @@ Realtime::Realtime(const MethodSettings& settings)
       attitude_(attitude_settings(settings.sensor)),
       integrator_(kFineInterval_s),
       identifier_(identifier_settings(attitude_settings(settings.sensor))),
-      filter_(identifier_.model()),
+      filter_(identifier_.model(), 0),
       counter_(settings.sensor) {
   const double longest = (filter_.order() - 2) * kFineInterval_s;
   if (!(settings.fixed_lag_s >= 0 && settings.fixed_lag_s <= longest))
@@ -40,35 +48,44 @@ Realtime::Realtime(const MethodSettings& settings)
                     std::to_string(longest) + " s");
 }
 
-void Realtime::add(const ImuSample& sample, Output& output) {
-  const GuardVerdict verdict = guard_.check(sample);
+void Realtime::add(const ImuSample& raw, Output& output) {
+  const GuardVerdict verdict = guard_.check(raw);
   if (!verdict.usable) {
     pending_flags_ |= verdict.flags & ~flag::kGap;
     return;
   }
+  ImuSample sample = raw;
+  sample.flags = verdict.flags | std::exchange(pending_flags_, 0);
   // 1. Level.
-  const AttitudeSample& attitude = attitude_.update(sample);
-  const double a_up = -attitude.a_N.z();
-  const double share =
-      std::max(1.0 / static_cast<double>(++samples_), guard_.usual_interval_s() / kMotionMemory_s);
-  motion_.follow(attitude, share);
-  disturbance_.add(disturbance_m2ps3(attitude, verdict.flags, settings_.sensor.gravity_mps2) +
-                   turned_offset_m2ps3(attitude, motion_, settings_.sensor));
+  AttitudeSample attitude = attitude_.update(sample);
   // 2. Integrate, and at the nodes tell drift from sea.
-  std::int32_t flags = verdict.flags | pending_flags_;
-  pending_flags_ = 0;
-  if (!started_ || verdict.dt_s > kLongestGap_s + 2 * guard_.usual_interval_s()) {
-    if (started_) flags |= flag::kGap;
-    restart(sample, a_up, output);
+  if (!started_) {
+    start_path(sample, attitude);
+  } else if (verdict.dt_s > kLongestGap_s + 2 * guard_.usual_interval_s()) {
+    sample.flags |= flag::kGap;
+    resume(sample, output);
+    start_path(sample, attitude);
   } else {
-    integrator_.add(sample.utime, a_up,
-                    [&](std::int64_t, const PathIncrement& increment) { node(increment); });
+    follow(sample, attitude, steps_);
+    for (const Step& step : steps_) filter(step);
+    steps_.clear();
+  }
+  if (rethinks_) first_.push_back(sample);
+  if (std::exchange(due_, false)) {
+    if (rethinks_)
+      attitude = rethink();
+    else
+      filter_.set_model(identifier_.identify());
   }
   // 3. Answer, now or after the lag.
+  Held held;
+  held.sample.utime = sample.utime;
+  held.sample.seq = sample.seq;
+  held.sample.flags = sample.flags;
   if (!attitude.settled || static_cast<double>(settled_nodes_) * kFineInterval_s < kSettling_s)
-    flags |= flag::kSettling;
-  held_.push_back(hold(sample, attitude));
-  held_.back().sample.flags = flags;
+    held.sample.flags |= flag::kSettling;
+  locate(attitude, held);
+  held_.push_back(held);
   release(sample.utime - std::llround(settings_.fixed_lag_s * 1e6), output);
 }
 
@@ -76,52 +93,94 @@ void Realtime::finish(Output& output) {
   if (!held_.empty()) release(held_.back().sample.utime, output);
 }
 
-void Realtime::restart(const ImuSample& sample, double a_up_mps2, Output& output) {
-  if (started_) {
-    finish(output);  // no later node tells more of what is held
-    const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
-    filter_.skip(static_cast<int>(std::ceil(std::min(missing_s, kLongestSkip_s) / kFineInterval_s)));
-    settled_nodes_ = 0;
-    identifier_.gap();
-    first_.clear();
-  }
-  integrator_.start(sample.utime, a_up_mps2);
+void Realtime::start_path(const ImuSample& sample, const AttitudeSample& attitude) {
+  integrator_.start(sample.utime, -attitude.a_N.z());
   whole_.clear();
   disturbance_ = {};
   started_ = true;
 }
 
-void Realtime::node(const PathIncrement& increment) {
-  filter_.step(increment, disturbance_.mean());
-  if (first_.size() < kRepeated) first_.push_back({increment, disturbance_.mean()});
-  whole_.push_back(increment);
-  if (std::ssize(whole_) > filter_.order()) whole_.pop_front();
-  disturbance_ = {};
-  ++nodes_;
-  ++settled_nodes_;
-  if (identifier_.add(increment)) take_model();
-  if (filter_.surprised() && identifier_.age() > kOldEnough) identifier_.forget();
+// After a gap.
+void Realtime::resume(const ImuSample& sample, Output& output) {
+  finish(output);  // no later node tells more of what is held
+  const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
+  filter_.skip(static_cast<int>(std::ceil(std::min(missing_s, kLongestSkip_s) / kFineInterval_s)));
+  settled_nodes_ = 0;
+  identifier_.gap();
+  rethinks_ = false;
 }
 
-void Realtime::take_model() {
-  if (nodes_ == std::ssize(first_)) {  // still at the beginning: as if the model had been known
-    filter_ = HeaveFilter(identifier_.model());
-    for (const FirstStep& step : first_) filter_.step(step.increment, step.disturbance_m2ps3);
-  } else {
-    filter_.set_model(identifier_.model());
+// Appends the node intervals that end with the sample.
+void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude, std::vector<Step>& steps) {
+  const double share =
+      std::max(1.0 / static_cast<double>(++samples_), guard_.usual_interval_s() / kMotionMemory_s);
+  motion_.follow(attitude, share);
+  disturbance_.add(disturbance_m2ps3(attitude, sample.flags, settings_.sensor.gravity_mps2) +
+                   turned_offset_m2ps3(attitude, motion_, settings_.sensor));
+  integrator_.add(sample.utime, -attitude.a_N.z(), [&](std::int64_t, const PathIncrement& increment) {
+    steps.push_back({increment, disturbance_.mean()});
+    disturbance_ = {};
+    whole_.push_back(increment);
+    if (std::ssize(whole_) > filter_.order()) whole_.pop_front();
+    due_ |= identifier_.add(increment);
+    ++nodes_;
+  });
+}
+
+void Realtime::filter(const Step& step) {
+  filter_.step(step.increment, step.disturbance_m2ps3);
+  ++settled_nodes_;
+  if (filter_.surprised() && identifier_.age() > kOldEnough) {
+    identifier_.forget();
+    rethinks_ = false;
   }
 }
 
-Realtime::Held Realtime::hold(const ImuSample& sample, const AttitudeSample& attitude) const {
-  Held held;
-  held.sample.utime = sample.utime;
-  held.sample.seq = sample.seq;
+// The filter after these steps from the start, had their sea been known; of some swells that may lie under
+// it, the one which makes the path most probable.
+HeaveFilter Realtime::most_probable(const std::vector<Step>& steps) {
+  const double elapsed_s = static_cast<double>(nodes_) * kFineInterval_s;
+  std::optional<HeaveFilter> best;
+  for (const double swell : kSwells) {
+    const SeaModel& sea = identifier_.identify(swell);
+    HeaveFilter filter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor));
+    for (const Step& step : steps) filter.step(step.increment, step.disturbance_m2ps3);
+    if (!best || filter.log_likelihood() > best->log_likelihood()) best = std::move(filter);
+  }
+  return *std::move(best);
+}
+
+// The samples so far, levelled by all of them and filtered as if their sea had been known. Attitude of the
+// newest.
+AttitudeSample Realtime::rethink() {
+  const std::vector<AttitudeSample> attitude =
+      smooth_attitude(first_, attitude_settings(settings_.sensor), &attitude_);
+  samples_ = nodes_ = 0;
+  motion_ = {};
+  identifier_.restart();
+  start_path(first_.front(), attitude.front());
+  std::vector<Step> steps;
+  const std::size_t before = first_.size() - 1 - held_.size();  // those that are answered
+  for (std::size_t i = 0; i < first_.size(); ++i) {
+    if (i > 0) follow(first_[i], attitude[i], steps);
+    if (i >= before && i - before < held_.size()) locate(attitude[i], held_[i - before]);
+  }
+  due_ = false;
+  filter_ = most_probable(steps);
+  if (static_cast<double>(nodes_) * kFineInterval_s > kRethought_s || first_.size() > kMostRethought) {
+    rethinks_ = false;
+    first_ = {};
+  }
+  return attitude.back();
+}
+
+// Between which nodes the newest sample lies.
+void Realtime::locate(const AttitudeSample& attitude, Held& held) const {
   held.sample.q_NB = attitude.q_NB;
   held.partial = integrator_.partial();
   held.since_node_s = integrator_.since_node_s();
   held.tilt_sigma_rad = attitude.tilt_sigma_rad;
   held.node = nodes_;
-  return held;
 }
 
 void Realtime::estimate(const Held& held, HeaveSample& out) const {

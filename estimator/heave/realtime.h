@@ -2,11 +2,14 @@
 //
 // AttitudeFilter levels the specific force; PathIntegrator integrates its vertical part twice; SeaIdentifier
 // learns the sea's spectrum from it and HeaveFilter tells drift from sea by it, at nodes a quarter of a
-// second apart. Between nodes heave is the double integral itself: gain one, no lag. In the first 40 s each
-// new model goes through all nodes again, as if it had been known from the start. With a fixed lag each
-// sample waits until the nodes after it have told more about it.
+// second apart. Between nodes heave is the double integral itself: gain one, no lag. The first minute is
+// gone through again with every new model of the sea, levelled by all that was seen since, as if attitude
+// and sea had been known from the start; what no spectrum shows yet, a swell under the sea, is settled by the
+// likelihood of the path. With a fixed lag each sample waits until the nodes after it have told more about
+// it.
 #pragma once
 #include <deque>
+#include <vector>
 
 #include "estimator/attitude/attitude_filter.h"
 #include "estimator/heave/disturbance.h"
@@ -31,10 +34,17 @@ class Realtime : public Method {
     double since_node_s = 0, tilt_sigma_rad = 0;
     std::int64_t node = 0;  // number of that node
   };
-  void restart(const ImuSample& sample, double a_up_mps2, Output& output);
-  void node(const PathIncrement& increment);
-  void take_model();
-  Held hold(const ImuSample& sample, const AttitudeSample& attitude) const;
+  struct Step {
+    PathIncrement increment;
+    double disturbance_m2ps3;
+  };
+  void start_path(const ImuSample& sample, const AttitudeSample& attitude);
+  void resume(const ImuSample& sample, Output& output);
+  void follow(const ImuSample& sample, const AttitudeSample& attitude, std::vector<Step>& steps);
+  void filter(const Step& step);
+  HeaveFilter most_probable(const std::vector<Step>& steps);
+  AttitudeSample rethink();
+  void locate(const AttitudeSample& attitude, Held& held) const;
   void estimate(const Held& held, HeaveSample& sample) const;
   void release(std::int64_t until_utime, Output& output);
 
@@ -46,18 +56,15 @@ class Realtime : public Method {
   HeaveFilter filter_;
   WaveCounter counter_;
 
-  struct FirstStep {
-    PathIncrement increment;
-    double disturbance_m2ps3;
-  };
-  std::vector<FirstStep> first_;     // from the start on, for as long as a new model goes through them again
+  std::vector<ImuSample> first_;     // from the start on, for as long as they are gone through again
+  std::vector<Step> steps_;          // of the sample just added; a member for its memory
   std::deque<PathIncrement> whole_;  // the newest node intervals, newest last
   std::deque<Held> held_;
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
   MeanDisturbance disturbance_;  // since the last node
   Motion motion_;
-  bool started_ = false;
+  bool started_ = false, rethinks_ = true, due_ = false;
 };
 
 }  // namespace waverig::estimator

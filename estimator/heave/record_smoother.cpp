@@ -62,10 +62,10 @@ SeaModel identify(std::span<const Piece> pieces, const AttitudeSettings& attitud
   settings.accel_noise_m2ps3 = square(attitude.accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
   SeaIdentifier identifier(settings);
   for (const Piece& piece : pieces) {
-    for (const PathIncrement& increment : piece.increments) identifier.add(increment);
     identifier.gap();
+    for (const PathIncrement& increment : piece.increments) identifier.add(increment);
   }
-  return identifier.model();
+  return identifier.identify();
 }
 
 // Heave between the nodes: the double integral from the node on, plus what brings it to the next node's

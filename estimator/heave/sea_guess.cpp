@@ -1,6 +1,7 @@
 #include "estimator/heave/sea_guess.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -8,13 +9,14 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr int kOrder = 24;
-constexpr int kPeriods = 10;
-constexpr double kShortest_s = 2, kRatio = 1.26;  // of the peak periods
-constexpr double kSteepness_s2m = 0.03;           // Hm0 = kSteepness Tp^2, a usual sea
-constexpr double kCut = 5;                        // end of a short tail, peak frequencies
-constexpr double kRidge = 1e-6;                   // of the variance, white
-constexpr double kPriorValues = 4;                // as many values say that the size is a usual one
+constexpr int kOrder = 40;
+constexpr int kPeriods = 16;
+constexpr double kShortest_s = 2, kRatio = 1.15;   // of the peak periods
+constexpr double kSteepness_s2m = 0.03;            // Hm0 = kSteepness Tp^2, a usual sea
+constexpr std::array kHeights = {1.0, 0.1, 0.01};  // of the usual; the least is noise
+constexpr double kCut = 5;                         // end of a short tail, peak frequencies
+constexpr double kRidge = 1e-6;                    // of the variance, white
+constexpr double kPriorValues = 1;                 // as many values say that the size is the candidate's
 
 // S(f) ~ f^-5 exp(-5/4 (fp/f)^4), whose integral is 1 / (5 fp^4). Two-sided.
 double pierson_moskowitz(double variance_m2, double peak_hz, double f_hz) {
@@ -26,26 +28,28 @@ double pierson_moskowitz(double variance_m2, double peak_hz, double f_hz) {
 
 SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3)
     : newest_(Eigen::VectorXd::Zero(kOrder)) {
-  const double step = std::numbers::pi / static_cast<double>(bins - 1);
-  const double df_hz = step / (2 * std::numbers::pi * dt_s);
+  const Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(bins, 0, std::numbers::pi);  // a node
+  const double df_hz = w[1] / (2 * std::numbers::pi * dt_s);
+  const Eigen::VectorXd turned = 2 - 2 * w.array().cos();
+  const Eigen::VectorXd noise = accel_noise_m2ps3 * std::pow(dt_s, 4) * (2 + w.array().cos()) / 3;
+  Eigen::MatrixXd lags(kOrder + 1, bins);
+  for (int j = 0; j <= kOrder; ++j) lags.row(j) = (j * w.array()).cos();
   for (int p = 0; p < kPeriods; ++p)
-    for (const bool cut : {false, true}) {
-      const double tp_s = kShortest_s * std::pow(kRatio, p), hm0_m = kSteepness_s2m * tp_s * tp_s;
-      Candidate c{Eigen::VectorXd::Zero(bins), {}};
-      Eigen::VectorXd r = Eigen::VectorXd::Zero(kOrder + 1);
-      for (Eigen::Index i = 1; i < bins; ++i) {
-        const double f = df_hz * static_cast<double>(i), w = step * static_cast<double>(i);
-        if (!cut || f * tp_s < kCut) c.density_m2s[i] = pierson_moskowitz(hm0_m * hm0_m / 16, 1 / tp_s, f);
-        const double turned = 2 - 2 * std::cos(w);
-        const double seen = turned * turned * c.density_m2s[i] +
-                            accel_noise_m2ps3 * std::pow(dt_s, 4) * (2 + std::cos(w)) / 3;
-        c.variance_m2 += 2 * df_hz * seen;
-        for (int j = 0; j <= kOrder; ++j) r[j] += 2 * df_hz * turned * seen * std::cos(j * w);
+    for (const double height : kHeights)
+      for (const bool cut : {false, true}) {
+        const double tp_s = kShortest_s * std::pow(kRatio, p), hm0_m = height * kSteepness_s2m * tp_s * tp_s;
+        Candidate c{.density_m2s = Eigen::VectorXd::Zero(bins), .predictors = {}, .prior = height * height};
+        for (Eigen::Index i = 1; i < bins; ++i) {
+          const double f = df_hz * static_cast<double>(i);
+          if (!cut || f * tp_s < kCut) c.density_m2s[i] = pierson_moskowitz(hm0_m * hm0_m / 16, 1 / tp_s, f);
+        }
+        const Eigen::VectorXd seen = turned.cwiseAbs2().cwiseProduct(c.density_m2s) + noise;
+        c.variance_m2 = 2 * df_hz * seen.tail(bins - 1).sum();
+        Eigen::VectorXd r = 2 * df_hz * (lags * turned.cwiseProduct(seen));
+        r[0] *= 1 + kRidge;
+        c.predictors = levinson(r);
+        candidates_.push_back(std::move(c));
       }
-      r[0] *= 1 + kRidge;
-      c.predictors = levinson(r);
-      candidates_.push_back(std::move(c));
-    }
   restart();
 }
 
@@ -84,10 +88,11 @@ Eigen::VectorXd SeaGuess::density_m2s() const {
   for (const Candidate& c : candidates_) best = std::max(best, log_likelihood(c));
   Eigen::VectorXd density = Eigen::VectorXd::Zero(candidates_.front().density_m2s.size());
   for (const Candidate& c : candidates_) {
-    const double likelihood = std::exp(log_likelihood(c) - best);
     const double by_variance = (squares_m2_ / c.variance_m2 + kPriorValues) / n;
-    density += likelihood * std::max(size(c), by_variance) * c.density_m2s;
-    sum += likelihood;
+    const Eigen::VectorXd sea = std::max(size(c), by_variance) * c.density_m2s;
+    const double weight = c.prior * std::exp(log_likelihood(c) - best) / sea.sum();
+    density += weight * sea;
+    sum += weight;
   }
   return density / sum;
 }

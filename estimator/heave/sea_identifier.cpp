@@ -7,13 +7,13 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kDt = kFineInterval_s;
-constexpr int kFirstGuess = 6;         // nodes before the first guess
-constexpr int kShortest = 56;          // nodes before the first periodogram: 14 s
-constexpr int kFirstSteps = 16;        // nodes between the first ones
-constexpr int kKept = 16;              // of the old sea's nodes, which saw the new one begin
-constexpr double kResolved = 2.5;      // cycles a block: what a Hann window keeps apart from the mean
-constexpr double kGuessWeight = 0.01;  // of the guess, beside periodograms of a whole block
-constexpr double kLeastSea = 1e-4;     // of the unknown sea: what a calm may still become
+constexpr int kFirstGuess = 1;      // nodes before the first guess
+constexpr int kShortest = 56;       // nodes before the first periodogram: 14 s
+constexpr int kFirstSteps = 2;      // nodes from the first guess to the second
+constexpr int kKept = 16;           // of the old sea's nodes, which saw the new one begin
+constexpr double kResolved = 2.5;   // cycles a block: what a Hann window keeps apart from the mean
+constexpr double kYoung = 0.2;      // of a grown sea's slow waves, in one that just came up
+constexpr double kLeastSea = 1e-4;  // of the unknown sea: what a calm may still become
 
 }  // namespace
 
@@ -29,6 +29,14 @@ SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
   for (Eigen::Index i = 1; i < unknown_.size(); ++i)
     unknown_[i] = unknown_sea_density_m2s(static_cast<double>(i) / (kDt * settings.block));
   newest_.reserve(static_cast<std::size_t>(2 * settings.block));
+}
+
+void SeaIdentifier::restart() {
+  gap();
+  guesses_ = true;
+  weight_ = 0;
+  age_ = 0;
+  until_next_ = kFirstGuess;
 }
 
 void SeaIdentifier::gap() {
@@ -58,7 +66,6 @@ bool SeaIdentifier::add(const PathIncrement& increment) {
   if (std::ssize(newest_) > block) newest_.erase(newest_.begin(), newest_.end() - block);
   until_next_ = std::clamp(static_cast<int>(newest_.size()) / 4, kFirstSteps, settings_.every);
   if (std::ssize(newest_) >= kShortest) periodogram();
-  identify();
   return true;
 }
 
@@ -68,21 +75,23 @@ void SeaIdentifier::periodogram() {
   const double kept = settings_.memory_s > 0 ? std::exp(-settings_.every * kDt / settings_.memory_s) : 1;
   weight_ = kept * weight_ + fresh;
   density_ += fresh / weight_ * (periodogram_.of(newest_, kDt) - density_);
+  lowest_hz_ = kResolved / (kDt * static_cast<double>(newest_.size()));
 }
 
-void SeaIdentifier::identify() {
+const SeaModel& SeaIdentifier::identify(double swell) {
   const double df = 1 / (kDt * settings_.block);
   SeaAndNoise split{guesses_ ? guess_.density_m2s() : unknown_, settings_.accel_noise_m2ps3, 1};
   Eigen::VectorXd& sea = split.heave_density_m2s;
+  if (guesses_) sea += swell * sea.sum() / unknown_.sum() * unknown_;
   if (weight_ > 0) {
-    const double lowest_hz = kResolved / (kDt * static_cast<double>(newest_.size()));
     const Eigen::VectorXd guess = sea;
-    split = split_sea_from_noise(density_, kDt, settings_.accel_noise_m2ps3, lowest_hz);
-    // What is too slow to be resolved yet is as guessed, in proportion to the rest.
-    const auto slow = static_cast<Eigen::Index>(lowest_hz / df) + 1, fast = sea.size() - slow;
+    split = split_sea_from_noise(density_, kDt, settings_.accel_noise_m2ps3, lowest_hz_);
+    // What is too slow to be resolved yet is as guessed, in proportion to the rest; what comes upon a sea or
+    // a calm has not grown its longest waves yet.
+    const auto slow = static_cast<Eigen::Index>(lowest_hz_ / df) + 1, fast = sea.size() - slow;
     const double size = sea.tail(fast).sum() / guess.tail(fast).sum();
-    sea.head(slow) = size * guess.head(slow);
-    const double share = guesses_ ? kGuessWeight / (kGuessWeight + weight_) : 0;
+    sea.head(slow) = (guesses_ ? 1 : kYoung) * size * guess.head(slow);
+    const double share = guesses_ ? settings_.guess_weight / (settings_.guess_weight + weight_) : 0;
     sea += share * (size * guess - sea);
   }
   const double interval_s =
@@ -94,6 +103,7 @@ void SeaIdentifier::identify() {
     model_.innovation_m2 *= kLeastSea;
   }
   model_.set_noise(split.noise_m2ps3);
+  return model_;
 }
 
 }  // namespace waverig::estimator

@@ -17,6 +17,7 @@ struct SeaIdentifierSettings {
   int block = 512;                      // fine nodes of a periodogram: 128 s
   int every = 64;                       // fine nodes from one periodogram to the next; sooner at first
   double memory_s = 300;                // of the density; 0: never forgets
+  double guess_weight = 0.01;           // of the guess beside periodograms, in whole blocks
   double accel_noise_m2ps3 = 6e-6;      // two-sided density assumed until it is seen; data sheet
 };
 
@@ -24,16 +25,19 @@ class SeaIdentifier {
  public:
   explicit SeaIdentifier(const SeaIdentifierSettings& settings);
 
-  // One fine node interval. True when there is a new model.
+  // One fine node interval. True when so much is new that the sea is worth identifying again.
   bool add(const PathIncrement& increment);
-  void gap();                       // the next increment does not follow on the last
-  void forget();                    // the sea is another one from about now on
-  int age() const { return age_; }  // nodes since the start, or since it forgot
-  const SeaModel& model() const { return model_; }
+  // By all that was added. swell: variance of a long swell under the guessed sea, relative to it; nothing
+  // that is seen at a few nodes tells of it.
+  const SeaModel& identify(double swell = 0);
+  void restart();                                   // nothing was added
+  void gap();                                       // the next increment does not follow on the last
+  void forget();                                    // the sea is another one from about now on
+  int age() const { return age_; }                  // nodes since the start, or since it forgot
+  const SeaModel& model() const { return model_; }  // as last identified
 
  private:
   void periodogram();
-  void identify();
 
   SeaIdentifierSettings settings_;
   Periodogram periodogram_;
@@ -44,8 +48,8 @@ class SeaIdentifier {
   int until_next_ = 0, age_ = 0;
   PathIncrement last_;
   bool has_last_ = false;
-  Eigen::VectorXd density_;  // of the second differences, two-sided
-  double weight_ = 0;
+  Eigen::VectorXd density_;            // of the second differences, two-sided
+  double weight_ = 0, lowest_hz_ = 0;  // of the periodograms, and what the last one resolves
   SeaModel model_;
 };
 

@@ -62,7 +62,7 @@ TEST(RealData, HandMovedBoardComesOutAsTheCamerasSawIt) {
   const auto samples = read_samples(imu);
   const auto truth = evaluation::read_heave_csv(seen);
   EXPECT_LT(moving_rms("smoothed", samples, truth), 0.008);
-  EXPECT_LT(moving_rms("realtime", samples, truth), 0.035);
+  EXPECT_LT(moving_rms("realtime", samples, truth), 0.03);
 }
 
 TEST(RealData, ARotationRecordingCalibratesIt) {
@@ -74,7 +74,7 @@ TEST(RealData, ARotationRecordingCalibratesIt) {
   for (auto& sample : samples) sample.f_B = correct(sample.f_B);
   const auto truth = evaluation::read_heave_csv(recordings() / "broad10_translation.truth.csv.gz");
   EXPECT_LT(moving_rms("smoothed", samples, truth), 0.008);
-  EXPECT_LT(moving_rms("realtime", samples, truth), 0.035);
+  EXPECT_LT(moving_rms("realtime", samples, truth), 0.03);
 }
 
 }  // namespace

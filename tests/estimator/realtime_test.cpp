@@ -87,8 +87,64 @@ TEST(Realtime, HasUnitGainAndNoLagAtTheWaveFrequencies) {
   }
 }
 
+// Even with spectrum and attitude known, heave at the first sample is not: that alone is 2.1 to 2.2 % of Hm0 over twenty
+// minutes, and 3.7 % at 12 s and 1 m.
+TEST(Realtime, StaysWithinTheStatedErrorOverAWholeRecordThatBeginsInMidSea) {
+  for (const Limit& limit : {Limit{3, 0.5, 0.025}, {6, 1, 0.025}, {8, 1.5, 0.025}, {9, 2, 0.025}, {12, 1, 0.04}}) {
+    double squares = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const SeaRecord record = sea_record({.tp_s = limit.tp_s, .hm0_m = limit.hm0_m}, seed);
+      squares += square(rms_over_hm0(run_realtime(record.samples).heaves, record, 0, record.samples.size())) / 6;
+    }
+    EXPECT_LT(std::sqrt(squares), limit.rms) << "Tp " << limit.tp_s << " s, Hm0 " << limit.hm0_m << " m";
+  }
+}
+
+TEST(Realtime, ReadsNothingWhileItRestsThoughItsSensorIsOff) {
+  SyntheticWaves still;
+  still.height_m = 0;
+  still.duration_s = 60;
+  SensorErrors errors;
+  errors.b_mps2 = {0.1, -0.05, 0.06};
+  const SyntheticRecord record = synthesize(still, errors, 3);
+  for (const HeaveSample& h : run_realtime(record.samples).heaves)
+    ASSERT_LT(std::abs(h.heave_m), 0.03) << "at " << static_cast<double>(h.utime - record.samples[0].utime) * kMicrosecond;
+}
+
+TEST(Realtime, IsNotLostInASwellThatNoSpectrumShowsYet) {
+  double squares = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const SeaRecord record =
+        sea_record({.tp_s = 4, .hm0_m = 0.9, .duration_s = 60, .swell_tp_s = 12, .swell_hm0_m = 1.5}, seed);
+    squares += square(rms_over_hm0(run_realtime(record.samples).heaves, record, 2000, 6000)) / 6;
+  }
+  EXPECT_LT(std::sqrt(squares), 0.09);
+}
+
+TEST(Realtime, FollowsASeaThatComesUp) {
+  const auto rms = [](const SeaCase& first, const SeaCase& then, double rises_s, double from_s, double to_s) {
+    double squares = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const SeaRecord record = changing_record(first, then, 300, rises_s, seed);
+      double sum = 0;
+      const auto begin = static_cast<std::size_t>(100 * from_s), end = static_cast<std::size_t>(100 * to_s);
+      const Collector out = run_realtime(record.samples);
+      for (std::size_t i = begin; i < end; ++i) sum += square(out.heaves[i].heave_m - record.heave_m[i]);
+      squares += sum / static_cast<double>(end - begin) / 4;
+    }
+    return std::sqrt(squares) / then.hm0_m;
+  };
+  const SeaCase calm{.tp_s = 9, .hm0_m = 0.001}, chop{.tp_s = 5, .hm0_m = 0.5};
+  const SeaCase gale{.tp_s = 9, .hm0_m = 3, .duration_s = 600}, waves{.tp_s = 6, .hm0_m = 1, .duration_s = 600};
+  EXPECT_LT(rms(chop, gale, 5, 300, 340), 0.10);
+  EXPECT_LT(rms(chop, gale, 60, 300, 400), 0.04);
+  EXPECT_LT(rms(calm, waves, 5, 300, 340), 0.06);
+  EXPECT_LT(rms(calm, waves, 60, 300, 400), 0.06);
+  EXPECT_LT(rms(calm, waves, 5, 420, 600), 0.025);
+}
+
 TEST(Realtime, KnowsTheSeaWithinSecondsOfTheRecordsStart) {
-  for (const Limit& limit : {Limit{4, 0.5, 0.05}, {6, 1, 0.05}, {8, 1.5, 0.06}, {12, 1, 0.09}}) {
+  for (const Limit& limit : {Limit{4, 0.5, 0.03}, {6, 1, 0.03}, {8, 1.5, 0.04}, {12, 1, 0.08}}) {
     double squares = 0;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       const SeaRecord record = sea_record({.tp_s = limit.tp_s, .hm0_m = limit.hm0_m, .duration_s = 120}, seed);

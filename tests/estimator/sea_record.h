@@ -1,8 +1,10 @@
 // A float on an irregular sea, with a data-sheet sensor: samples and truth. The sea comes from motion/sea_state.h, of
 // which the estimator knows nothing.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "estimator/method.h"
@@ -15,6 +17,7 @@ struct SeaCase {
   double tp_s = 8, hm0_m = 1.5;
   double duration_s = 1200, rate_Hz = 100;
   double slope_following = 1;
+  double swell_tp_s = 0, swell_hm0_m = 0;  // another sea under it, from elsewhere
   bool perfect_sensor = false;
 };
 
@@ -34,21 +37,22 @@ inline SensorErrors calibrated_errors(std::uint64_t seed) {
   return e;
 }
 
-inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
+inline motion::SeaSettings sea_settings(double tp_s, double hm0_m, std::uint64_t seed) {
   motion::SeaSettings sea;
-  sea.tp_s = c.tp_s;
-  sea.hm0_m = c.hm0_m;
+  sea.tp_s = tp_s;
+  sea.hm0_m = hm0_m;
   sea.direction_from_rad = 1.0;
   sea.spreading_s = 10;
   sea.components = 250;
   sea.random_amplitudes = true;
   sea.exact_hm0 = false;
   sea.seed = seed;
-  motion::FloatSettings body;
-  body.slope_following = c.slope_following;
-  body.heading_rad = 0.4;
-  motion::SeaMotion motion(motion::draw_components(sea), body);
+  return sea;
+}
 
+// The sensor on a body whose motion at a time is motion(utime).
+template <class Motion>
+SeaRecord recorded(const SeaCase& c, std::uint64_t seed, Motion motion) {
   const SensorErrors e = c.perfect_sensor ? SensorErrors{.accel_noise_mps2_rthz = 0, .gyro_noise_radps_rthz = 0}
                                           : calibrated_errors(seed);
   RandomStream noise(seed, "noise");
@@ -62,7 +66,7 @@ inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
   const auto count = static_cast<std::size_t>(c.duration_s * c.rate_Hz);
   for (std::size_t i = 0; i < count; ++i) {
     const auto utime = 1'000'000 + std::llround(static_cast<double>(i) / c.rate_Hz / kMicrosecond);
-    const BodyMotion m = motion.at(utime);
+    const BodyMotion m = motion(utime);
     const Vector3d f = specific_force_B(m, g_N);
     estimator::ImuSample sample;
     sample.utime = utime;
@@ -75,6 +79,44 @@ inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
     record.q_NB.push_back(m.q_NB);
   }
   return record;
+}
+
+inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
+  auto components = motion::draw_components(sea_settings(c.tp_s, c.hm0_m, seed));
+  if (c.swell_hm0_m > 0) {
+    auto swell = sea_settings(c.swell_tp_s, c.swell_hm0_m, seed + 1000);
+    swell.direction_from_rad = 2.5;
+    for (const auto& component : motion::draw_components(swell)) components.push_back(component);
+  }
+  motion::FloatSettings body;
+  body.slope_following = c.slope_following;
+  body.heading_rad = 0.4;
+  return recorded(c, seed, [motion = motion::SeaMotion(std::move(components), body)](std::int64_t utime) mutable {
+    return motion.at(utime);
+  });
+}
+
+// A body that stays level in one sea until another has taken its place, smoothly from begins_s on over rises_s; c is the
+// second sea.
+inline SeaRecord changing_record(const SeaCase& first, const SeaCase& c, double begins_s, double rises_s,
+                                 std::uint64_t seed) {
+  motion::FloatSettings level;
+  level.slope_following = 0;
+  motion::SeaMotion before(motion::draw_components(sea_settings(first.tp_s, first.hm0_m, seed)), level),
+      after(motion::draw_components(sea_settings(c.tp_s, c.hm0_m, seed + 1000)), level);
+  return recorded(c, seed, [=](std::int64_t utime) mutable {
+    const BodyMotion a = before.at(utime), b = after.at(utime);
+    const double x = std::clamp((static_cast<double>(utime) * kMicrosecond - begins_s) / rises_s, 0.0, 1.0);
+    const double w = x * x * x * (10 - 15 * x + 6 * x * x);  // and its derivatives by time
+    const double dw = 30 * x * x * (1 - x) * (1 - x) / rises_s,
+                 ddw = 60 * x * (1 - x) * (1 - 2 * x) / (rises_s * rises_s);
+    BodyMotion m = a;
+    m.position_N += w * (b.position_N - a.position_N);
+    m.velocity_N += w * (b.velocity_N - a.velocity_N) + dw * (b.position_N - a.position_N);
+    m.acceleration_N += w * (b.acceleration_N - a.acceleration_N) + 2 * dw * (b.velocity_N - a.velocity_N) +
+                        ddw * (b.position_N - a.position_N);
+    return m;
+  });
 }
 
 inline double square(double x) { return x * x; }
