@@ -124,6 +124,7 @@ bool on_sector(const PanelView& v, Vec2 pixel) {
 
 // Over the data, along one of the eight rays that compass and degree labels leave free: the one with the least data.
 void draw_polar_radii(const PanelPlan& p, const PanelView& v) {
+  constexpr int kHidden = 6;  // as a label with all six points on data
   struct Label {
     std::string text;
     float distance_px, half_px;
@@ -146,8 +147,12 @@ void draw_polar_radii(const PanelPlan& p, const PanelView& v) {
   for (int k = 0; k < 8; ++k) {
     const double angle = (22.5 + 45 * k) * std::numbers::pi / 180;
     int covered = 0;
+    Rect inner;  // the next ring's label, which flat rays bring near
     for (const Label& label : labels) {
       const Rect box = box_at(label, angle);
+      const bool apart = inner.right <= box.left || box.right <= inner.left || inner.bottom <= box.top || box.bottom <= inner.top;
+      if (!apart) covered += kHidden;
+      inner = box;
       for (const float x : {box.left, 0.5F * (box.left + box.right), box.right})
         for (const float y : {box.top, box.bottom}) covered += on_sector(v, {x, y});
     }

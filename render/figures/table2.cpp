@@ -41,7 +41,8 @@ Figure table2_figure(const CampaignResults& results) {
                .y = {.label = "Standard deviation", .unit = "cm", .scale = Scale::kLog}};
   top.marks.emplace_back(Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kSolid}});
 
-  const double series = static_cast<double>(methods.size()) + 1, step = 0.8 / series;
+  const double first = published ? 1 : 0;  // place of the first method, after the published one
+  const double series = static_cast<double>(methods.size()) + first, step = 0.8 / series;
   const auto place = [&](std::size_t setting, double index) {
     return static_cast<double>(setting) - 0.4 + (index + 0.5) * step;
   };
@@ -86,7 +87,7 @@ Figure table2_figure(const CampaignResults& results) {
       return c == nullptr ? kAuto : c->statistics.*member;
     };
     add(
-        methods[m], static_cast<int>(m), kMarkers[m % kMarkers.size()], static_cast<double>(m) + 1,
+        methods[m], static_cast<int>(m), kMarkers[m % kMarkers.size()], static_cast<double>(m) + first,
         [&](const Setting& s) { return of(s, &evaluation::HeightStatistics::mean_height_m); },
         [&](const Setting& s) { return of(s, &evaluation::HeightStatistics::std_m); });
   }
