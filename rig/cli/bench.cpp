@@ -149,6 +149,7 @@ void add_bench(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  waverig bench rig/sequences/scale_factor.toml --dry-run\n"
       "  waverig bench rig/sequences/scale_factor.toml --simulate --out results/scale\n"
+      "  waverig bench rig/sequences/scale_factor_dmm.toml --simulate --out results/scale_dmm      by the multimeter\n"
       "  waverig bench rig/sequences/bias.toml --simulate --out results/bias --scale-factors results/scale/calibration.json\n"
       "  waverig bench rig/sequences/scale_factor.toml --out /data/unit7 --resume      after a power loss");
   command->callback([arguments, &chosen] { chosen = [arguments] { return bench(*arguments); }; });
