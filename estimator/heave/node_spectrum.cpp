@@ -66,9 +66,11 @@ SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, do
     return std::clamp(noise_m2ps3, kLeastNoise * assumed_noise_m2ps3, kMostNoise * assumed_noise_m2ps3);
   };
   // The least of some levels is less than the noise, by chance: no reason to see a sea in the others.
-  const double least = level.segment(resolved, quiet_end - resolved).minCoeff();
-  const double quiet =
-      sees_noise ? std::max(plausible(least), kLeastQuiet * assumed_noise_m2ps3) : assumed_noise_m2ps3;
+  // A short record resolves nothing below the quiet end: there is no such level, and it is not asked for.
+  const double quiet = sees_noise
+                           ? std::max(plausible(level.segment(resolved, quiet_end - resolved).minCoeff()),
+                                      kLeastQuiet * assumed_noise_m2ps3)
+                           : assumed_noise_m2ps3;
   const auto stands_out = [&](Eigen::Index i) { return level[i] > kStandsOut * quiet; };
   Eigen::Index first = std::max(bin_of(kLowestSea_hz), resolved + 1);
   while (first < bins - 1 && !(stands_out(first) && stands_out(first + 1))) ++first;

@@ -22,7 +22,7 @@ constexpr double kRethought_s = 60;
 constexpr std::array kSwells = {0.002, 0.03, 0.5};  // relative variances, of which one is believed
 constexpr double kGuessWeight = 3;                  // periodograms of less than a minute tell little
 constexpr std::size_t kMostRethought = 60'000;      // samples
-constexpr int kOldEnough = 120;  // fine nodes of one sea before another one is believed: half a minute
+constexpr double kAtOnce = 1.1;
 
 double square(double x) { return x * x; }
 
@@ -130,7 +130,10 @@ void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude, s
 void Realtime::filter(const Step& step) {
   filter_.step(step.increment, step.disturbance_m2ps3);
   ++settled_nodes_;
-  if (filter_.surprised() && identifier_.age() > kOldEnough) {
+  if (filter_.surprised() && identifier_.age() > old_enough_) {
+    // Surprised again at once: what was forgotten was too little to show a sea as slow as this.
+    const bool at_once = identifier_.age() < kAtOnce * old_enough_;
+    old_enough_ = at_once ? std::min(2 * old_enough_, kOldestEnough) : kOldEnough;
     identifier_.forget();
     rethinks_ = false;
   }

@@ -62,6 +62,8 @@ class Realtime : public Method {
   std::deque<Held> held_;
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
+  static constexpr int kOldEnough = 120, kOldestEnough = 480;
+  int old_enough_ = kOldEnough;  // fine nodes of one sea before another one is believed
   MeanDisturbance disturbance_;  // since the last node
   Motion motion_;
   bool started_ = false, rethinks_ = true, due_ = false;

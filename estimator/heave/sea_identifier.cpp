@@ -7,13 +7,30 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kDt = kFineInterval_s;
-constexpr int kFirstGuess = 1;      // nodes before the first guess
-constexpr int kShortest = 56;       // nodes before the first periodogram: 14 s
-constexpr int kFirstSteps = 2;      // nodes from the first guess to the second
-constexpr int kKept = 16;           // of the old sea's nodes, which saw the new one begin
-constexpr double kResolved = 2.5;   // cycles a block: what a Hann window keeps apart from the mean
-constexpr double kYoung = 0.2;      // of a grown sea's slow waves, in one that just came up
-constexpr double kLeastSea = 1e-4;  // of the unknown sea: what a calm may still become
+constexpr int kFirstGuess = 1;        // nodes before the first guess
+constexpr int kShortest = 56;         // nodes before the first periodogram: 14 s
+constexpr int kFirstSteps = 2;        // nodes from the first guess to the second
+constexpr int kKept = 16;             // of the old sea's nodes, which saw the new one begin
+constexpr double kResolved = 2.5;     // cycles a block: what a Hann window keeps apart from the mean
+constexpr double kUnlike = 0.6;       // divergence from which on a guess tells little
+constexpr double kLeastShare = 1e-9;  // of a sea in one bin
+constexpr double kYoung = 0.2;        // of a grown sea's slow waves, in one that just came up
+constexpr double kLeastSea = 1e-4;    // of the unknown sea: what a calm may still become
+
+double square(double x) { return x * x; }
+
+// Kullback, Leibler 1951: how unlike the guess the shape of what is seen is. Of periodograms of a sea of that
+// very shape 0.2 to 0.4, of a single wave 1 to 4.
+double divergence(const Eigen::VectorXd& seen, const Eigen::VectorXd& guess) {
+  const double seen_sum = seen.sum(), guess_sum = guess.sum();
+  double sum = 0;
+  for (Eigen::Index i = 0; i < seen.size(); ++i)
+    if (seen[i] > 0) {
+      const double p = seen[i] / seen_sum, q = std::max(guess[i] / guess_sum, kLeastShare);
+      sum += p * std::log(p / q);
+    }
+  return sum;
+}
 
 }  // namespace
 
@@ -89,10 +106,14 @@ const SeaModel& SeaIdentifier::identify(double swell) {
     // What is too slow to be resolved yet is as guessed, in proportion to the rest; what comes upon a sea or
     // a calm has not grown its longest waves yet.
     const auto slow = static_cast<Eigen::Index>(lowest_hz_ / df) + 1, fast = sea.size() - slow;
-    const double size = sea.tail(fast).sum() / guess.tail(fast).sum();
+    const double guessed_m2s = guess.tail(fast).sum();
+    const double size = guessed_m2s > 0 ? sea.tail(fast).sum() / guessed_m2s : 0;
     sea.head(slow) = (guesses_ ? 1 : kYoung) * size * guess.head(slow);
-    const double share = guesses_ ? settings_.guess_weight / (settings_.guess_weight + weight_) : 0;
-    sea += share * (size * guess - sea);
+    if (guesses_) {
+      const double guessed =
+          settings_.guess_weight * std::exp(-square(divergence(sea.tail(fast), guess.tail(fast)) / kUnlike));
+      sea += guessed / (guessed + weight_) * (size * guess - sea);
+    }
   }
   const double interval_s =
       settings_.interval_s > 0 ? settings_.interval_s : suited_interval_s(sea, df, model_.interval_s);
