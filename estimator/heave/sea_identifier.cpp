@@ -103,12 +103,12 @@ const SeaModel& SeaIdentifier::identify(double swell) {
   if (weight_ > 0) {
     const Eigen::VectorXd guess = sea;
     split = split_sea_from_noise(density_, kDt, settings_.accel_noise_m2ps3, lowest_hz_);
-    // What is too slow to be resolved yet is as guessed, in proportion to the rest; what comes upon a sea or
-    // a calm has not grown its longest waves yet.
+    // What is too slow to be resolved yet is as guessed; where nothing guesses, as in a sea that came up and
+    // has not grown its longest waves yet, in proportion to the rest.
     const auto slow = static_cast<Eigen::Index>(lowest_hz_ / df) + 1, fast = sea.size() - slow;
     const double guessed_m2s = guess.tail(fast).sum();
     const double size = guessed_m2s > 0 ? sea.tail(fast).sum() / guessed_m2s : 0;
-    sea.head(slow) = (guesses_ ? 1 : kYoung) * size * guess.head(slow);
+    sea.head(slow) = (guesses_ ? 1 : kYoung * size) * guess.head(slow);
     if (guesses_) {
       const double guessed =
           settings_.guess_weight * std::exp(-square(divergence(sea.tail(fast), guess.tail(fast)) / kUnlike));

@@ -121,6 +121,23 @@ TEST(Realtime, IsNotLostInASwellThatNoSpectrumShowsYet) {
   EXPECT_LT(std::sqrt(squares), 0.09);
 }
 
+// Twenty seconds is longer than any sea that is guessed, and than what a short block of samples tells from drift.
+TEST(Realtime, LearnsRegularWavesWithinMinutesHoweverLong) {
+  for (const Limit& limit : {Limit{3, 0.6, 0.01}, {6, 1, 0.01}, {12, 1, 0.02}, {16, 1, 0.025}, {20, 1, 0.035}}) {
+    SyntheticWaves waves;
+    waves.period_s = limit.tp_s;
+    waves.height_m = limit.hm0_m;
+    waves.swing = Swing::kForced;
+    waves.duration_s = 900;
+    const SyntheticRecord record = synthesize(waves, calibrated_errors(2), 2);
+    const Collector out = run_realtime(record.samples);
+    double squares = 0;
+    for (std::size_t i = kSettled; i < out.heaves.size(); ++i)
+      squares += square(out.heaves[i].heave_m - record.heave_m[i]) / static_cast<double>(out.heaves.size() - kSettled);
+    EXPECT_LT(std::sqrt(squares / 2) / limit.hm0_m, limit.rms) << limit.tp_s << " s";   // Hm0 is sqrt(2) heights
+  }
+}
+
 TEST(Realtime, FollowsASeaThatComesUp) {
   const auto rms = [](const SeaCase& first, const SeaCase& then, double rises_s, double from_s, double to_s) {
     double squares = 0;
