@@ -81,7 +81,9 @@ bool SeaIdentifier::add(const PathIncrement& increment) {
   if (--until_next_ > 0 || std::ssize(newest_) < (guesses_ ? kFirstGuess : kShortest)) return false;
   const auto block = static_cast<std::ptrdiff_t>(settings_.block);
   if (std::ssize(newest_) > block) newest_.erase(newest_.begin(), newest_.end() - block);
-  until_next_ = std::clamp(static_cast<int>(newest_.size()) / 4, kFirstSteps, settings_.every);
+  // Where there is a guess, periodograms that overlap by more tell it little.
+  until_next_ =
+      std::clamp(static_cast<int>(newest_.size()) / (guesses_ ? 2 : 4), kFirstSteps, settings_.every);
   if (std::ssize(newest_) >= kShortest) periodogram();
   return true;
 }
