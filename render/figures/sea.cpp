@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "render/figures/methods.h"
 #include "render/figures/run_time.h"
@@ -56,7 +57,10 @@ Figure sea_states_figure(const CampaignResults& results) {
   Panel height = error_panel("(b) Hm0, measured less true"),
         period = error_panel("(c) Tm02, measured less true");
   const double step = 0.7 / static_cast<double>(std::max<std::size_t>(1, methods.size()));
-  std::string without_sea;
+  const auto place = [&](std::size_t setting, std::size_t method) {
+    return static_cast<double>(setting) - 0.35 + (static_cast<double>(method) + 0.5) * step;
+  };
+  std::string without_sea, bound_name = "limit (Wiener)";
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const auto add = [&](Panel& panel, auto value) {
       Points points{
@@ -66,13 +70,23 @@ Figure sea_states_figure(const CampaignResults& results) {
         const CellResult* cell = cell_of(results, settings[i], methods[m]);
         const double y = cell == nullptr ? kAuto : value(*cell);
         if (!std::isfinite(y)) continue;
-        points.x.push_back(static_cast<double>(i) - 0.35 + (static_cast<double>(m) + 0.5) * step);
+        points.x.push_back(place(i, m));
         points.y.push_back(y);
       }
       const bool any = !points.x.empty();
       if (any) panel.marks.emplace_back(std::move(points));
       return any;
     };
+    // Of each method by its own lag: what no other could undercut.
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      const CellResult* cell = cell_of(results, settings[i], methods[m]);
+      const double bound = cell == nullptr ? kAuto : 100 * cell->heave_bound_m / cell->true_hm0_m;
+      if (!std::isfinite(bound)) continue;
+      heave.marks.emplace_back(Line{.x = {place(i, m) - 0.45 * step, place(i, m) + 0.45 * step},
+                                    .y = {bound, bound},
+                                    .name = std::exchange(bound_name, ""),
+                                    .look = {.color = kInk, .width_pt = 1.2}});
+    }
     add(heave, [](const CellResult& c) { return 100 * c.heave_rmse_m / c.true_hm0_m; });
     const bool has_sea =
         add(height, [](const CellResult& c) { return 100 * (c.sea.sea.hm0_m / c.sea.true_hm0_m - 1); });
