@@ -1,6 +1,7 @@
 // waverig node recorder: everything on the bus into an LCM event log.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
@@ -14,7 +15,8 @@
 namespace waverig::cli {
 namespace {
 
-constexpr int kTick_ms = 50, kMostWaiting = 200000;
+constexpr int kTick_ms = 50;
+constexpr std::chrono::seconds kLongestRest{1};
 
 void record(Bus& bus, Requests& requests, const rig::RunWatch& watch, const RecorderArguments& arguments) {
   if (arguments.one_record) {
@@ -22,8 +24,10 @@ void record(Bus& bus, Requests& requests, const rig::RunWatch& watch, const Reco
   } else {
     while (requests.next() != Request::kStop) bus.handle(kTick_ms);
   }
-  for (int i = 0; i < kMostWaiting && bus.handle(0); ++i)
-    continue;  // what was sent before the end is in the log
+  // What was sent before the end is in the log, even where LCM's own thread has yet to fetch it from the
+  // socket: until nothing comes for a tick. A bus that never falls silent is left after a while.
+  const auto until = std::chrono::steady_clock::now() + kLongestRest;
+  while (std::chrono::steady_clock::now() < until && bus.handle(kTick_ms)) continue;
 }
 
 }  // namespace
