@@ -8,7 +8,14 @@ namespace {
 
 constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25;  // nothing known
 constexpr double kMeasurementVariance_m2 = 1e-10;  // the path is exact; this keeps the algebra regular
-constexpr double kSurprising = 3;  // innovation squared over its variance, and what it is then taken to be
+// Innovation squared over its variance from which on it surprises, and what it is then taken to be: a sea of
+// one spectrum seldom makes a large one; in a restless one, moved by hand, they tell little of the drift.
+struct Surprise {
+  double from, taken;
+};
+constexpr Surprise kSteady{12, 3}, kRestless{2, 2};
+constexpr double kRestlessFrom = 1.25, kRestlessShare = 1.0 / 120, kMostRestless = 30;
+constexpr double kUsualGrowth = 1.02;  // a node; how soon the variance of innovations is found to have grown
 constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
 constexpr double kCalmDown = 0.95;    // a node
 constexpr double kRoughShare = 0.05;  // of a node in the mean that tells another sea
@@ -33,6 +40,7 @@ void HeaveFilter::set_model(const SeaModel& model) {
     model_ = model;
   }
   surprise_ = roughness_ = 1;
+  usual_variance_m2_ = kNoVariance;
 }
 
 // No heave is known at these nodes yet: its prior is the sea's own.
@@ -101,13 +109,16 @@ void HeaveFilter::update() {
   double S = PH[0] + PH[n] + kMeasurementVariance_m2;
   // A sea that rises faster than the model is learned anew: believe the motion, and leave the drift as it is.
   const double ratio = innovation * innovation / S;
-  roughness_ += kRoughShare * (ratio * surprise_ - roughness_);
-  if (ratio > kSurprising) {
-    const double more = S * (ratio / kSurprising - 1);
+  usual_variance_m2_ = std::min(S, kUsualGrowth * usual_variance_m2_);
+  roughness_ += kRoughShare * (innovation * innovation / usual_variance_m2_ - roughness_);
+  restlessness_ += kRestlessShare * (std::min(ratio, kMostRestless) - restlessness_);
+  const Surprise& surprise = restlessness_ > kRestlessFrom ? kRestless : kSteady;
+  if (ratio > surprise.from) {
+    const double more = S * (ratio / surprise.taken - 1);
     P_(0, 0) += more;
     PH[0] += more;
     S += more;
-    surprise_ = std::min(surprise_ * std::min(ratio / kSurprising, kFastestRise), kLargestSurprise);
+    surprise_ = std::min(surprise_ * std::min(ratio / surprise.taken, kFastestRise), kLargestSurprise);
   } else {
     surprise_ = 1 + kCalmDown * (surprise_ - 1);
   }

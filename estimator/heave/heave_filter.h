@@ -6,6 +6,7 @@
 // every later measurement.
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 
 #include "estimator/heave/path_integrator.h"
 #include "estimator/heave/sea_model.h"
@@ -54,9 +55,12 @@ class HeaveFilter {
   double path_m_ = 0, speed_mps_ = 0, bias_mps2_ = 0;
   Eigen::MatrixXd P_, next_P_;
   static constexpr double kTooRough = 5;
+  static constexpr double kNoVariance = std::numeric_limits<double>::infinity();
   double log_likelihood_ = 0;
-  double roughness_ = 1;  // mean of the last innovations squared over the model's variance of them
-  double surprise_ = 1;   // how many times the model's innovation variance the sea is found to have just now
+  double usual_variance_m2_ = kNoVariance;  // of the innovations, when nothing surprises
+  double roughness_ = 1;                    // mean of the last innovations squared over that
+  double restlessness_ = 2;  // mean of half a minute's, capped; a sea is restless until it is found steady
+  double surprise_ = 1;  // how many times the model's innovation variance the sea is found to have just now
 };
 
 }  // namespace waverig::estimator

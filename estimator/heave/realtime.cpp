@@ -19,9 +19,9 @@ constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
 constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
 constexpr double kRethought_s = 60;
-constexpr std::array kSwells = {0.002, 0.03, 0.5};  // relative variances, of which one is believed
-constexpr double kGuessWeight = 3;                  // periodograms of less than a minute tell little
-constexpr std::size_t kMostRethought = 60'000;      // samples
+constexpr std::array kSwells = {5e-4, 0.03, 0.5};  // relative variances, of which one is believed
+constexpr double kGuessWeight = 3;                 // periodograms of less than a minute tell little
+constexpr std::size_t kMostRethought = 60'000;     // samples
 constexpr double kAtOnce = 1.1;
 
 double square(double x) { return x * x; }
@@ -130,7 +130,8 @@ void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude, s
 void Realtime::filter(const Step& step) {
   filter_.step(step.increment, step.disturbance_m2ps3);
   ++settled_nodes_;
-  if (filter_.surprised() && identifier_.age() > old_enough_) {
+  // What comes up in a calm is new, however short the calm was.
+  if (filter_.surprised() && (identifier_.age() > old_enough_ || (rethinks_ && identifier_.calm()))) {
     // Surprised again at once: what was forgotten was too little to show a sea as slow as this.
     const bool at_once = identifier_.age() < kAtOnce * old_enough_;
     old_enough_ = at_once ? std::min(2 * old_enough_, kOldestEnough) : kOldEnough;

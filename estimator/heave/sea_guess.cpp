@@ -12,11 +12,12 @@ namespace {
 constexpr int kOrder = 40;
 constexpr int kPeriods = 16;
 constexpr double kShortest_s = 2, kRatio = 1.15;   // of the peak periods
-constexpr double kSteepness_s2m = 0.03;            // Hm0 = kSteepness Tp^2, a usual sea
+constexpr double kSteepness_s2m = 0.035;           // Hm0 = kSteepness Tp^2, a usual sea
 constexpr std::array kHeights = {1.0, 0.1, 0.01};  // of the usual; the least is noise
-constexpr double kCut = 5;                         // end of a short tail, peak frequencies
-constexpr double kRidge = 1e-6;                    // of the variance, white
-constexpr double kPriorValues = 1;                 // as many values say that the size is the candidate's
+constexpr std::array kTailEnds = {3.0, 3.6, 4.3, 5.2,
+                                  6.2, 7.5, 9.0, 1e3};  // peak frequencies; the last: none
+constexpr double kRidge = 1e-6;                         // of the variance, white
+constexpr double kPriorValues = 1;                      // as many values say that the size is the candidate's
 
 // S(f) ~ f^-5 exp(-5/4 (fp/f)^4), whose integral is 1 / (5 fp^4). Two-sided.
 double pierson_moskowitz(double variance_m2, double peak_hz, double f_hz) {
@@ -36,12 +37,13 @@ SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3)
   for (int j = 0; j <= kOrder; ++j) lags.row(j) = (j * w.array()).cos();
   for (int p = 0; p < kPeriods; ++p)
     for (const double height : kHeights)
-      for (const bool cut : {false, true}) {
+      for (const double end : kTailEnds) {
         const double tp_s = kShortest_s * std::pow(kRatio, p), hm0_m = height * kSteepness_s2m * tp_s * tp_s;
-        Candidate c{.density_m2s = Eigen::VectorXd::Zero(bins), .predictors = {}, .prior = height * height};
+        Candidate c{
+            .density_m2s = Eigen::VectorXd::Zero(bins), .predictors = {}, .prior = std::pow(height, 3)};
         for (Eigen::Index i = 1; i < bins; ++i) {
           const double f = df_hz * static_cast<double>(i);
-          if (!cut || f * tp_s < kCut) c.density_m2s[i] = pierson_moskowitz(hm0_m * hm0_m / 16, 1 / tp_s, f);
+          if (f * tp_s < end) c.density_m2s[i] = pierson_moskowitz(hm0_m * hm0_m / 16, 1 / tp_s, f);
         }
         const Eigen::VectorXd seen = turned.cwiseAbs2().cwiseProduct(c.density_m2s) + noise;
         c.variance_m2 = 2 * df_hz * seen.tail(bins - 1).sum();

@@ -7,15 +7,19 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kDt = kFineInterval_s;
-constexpr int kFirstGuess = 1;        // nodes before the first guess
-constexpr int kShortest = 56;         // nodes before the first periodogram: 14 s
-constexpr int kFirstSteps = 2;        // nodes from the first guess to the second
-constexpr int kKept = 16;             // of the old sea's nodes, which saw the new one begin
-constexpr double kResolved = 2.5;     // cycles a block: what a Hann window keeps apart from the mean
-constexpr double kUnlike = 0.6;       // divergence from which on a guess tells little
-constexpr double kLeastShare = 1e-9;  // of a sea in one bin
-constexpr double kYoung = 0.2;        // of a grown sea's slow waves, in one that just came up
-constexpr double kLeastSea = 1e-4;    // of the unknown sea: what a calm may still become
+constexpr int kFirstGuess = 1;         // nodes before the first guess
+constexpr int kShortest = 56;          // nodes before the first periodogram: 14 s
+constexpr int kFirstSteps = 2;         // nodes from the first guess to the second
+constexpr int kKept = 16;              // of the old sea's nodes, which saw the new one begin
+constexpr double kResolved = 2.5;      // cycles a block: what a Hann window keeps apart from the mean
+constexpr double kUnlike = 0.6;        // divergence from which on a guess tells little
+constexpr double kLeastShare = 1e-9;   // of a sea in one bin
+constexpr double kFirstRidge = 3e-6;   // of a sea's variance, as model_of_density has it
+constexpr double kRidge = 1e-7;        // of a sea well known
+constexpr double kShortRecord = 0.01;  // weight of its periodograms
+constexpr double kYoung = 0.2;         // of a grown sea's slow waves, in one that just came up
+constexpr double kLeastSea = 1e-4;     // of the unknown sea: what a calm may still become
+constexpr double kCalm = 1e-3;         // of the unknown sea: a calm
 
 double square(double x) { return x * x; }
 
@@ -97,6 +101,8 @@ void SeaIdentifier::periodogram() {
   lowest_hz_ = kResolved / (kDt * static_cast<double>(newest_.size()));
 }
 
+bool SeaIdentifier::calm() const { return model_.heave_variance_m2() < kCalm * kUnknownSea_m2; }
+
 const SeaModel& SeaIdentifier::identify(double swell) {
   const double df = 1 / (kDt * settings_.block);
   SeaAndNoise split{guesses_ ? guess_.density_m2s() : unknown_, settings_.accel_noise_m2ps3, 1};
@@ -114,12 +120,14 @@ const SeaModel& SeaIdentifier::identify(double swell) {
     if (guesses_) {
       const double guessed =
           settings_.guess_weight * std::exp(-square(divergence(sea.tail(fast), guess.tail(fast)) / kUnlike));
-      sea += guessed / (guessed + weight_) * (size * guess - sea);
+      sea.tail(fast) += guessed / (guessed + weight_) * (size * guess.tail(fast) - sea.tail(fast));
     }
   }
   const double interval_s =
       settings_.interval_s > 0 ? settings_.interval_s : suited_interval_s(sea, df, model_.interval_s);
-  model_ = model_of_density(sea, df, interval_s, settings_.order);
+  // A short record has not shown yet what there is not.
+  const double ridge = std::max(kFirstRidge / (1 + weight_ / kShortRecord), kRidge);
+  model_ = model_of_density(sea, df, interval_s, settings_.order, ridge);
   if (model_.heave_variance_m2() < kLeastSea * kUnknownSea_m2) {  // calm: whatever comes, comes from anywhere
     model_ = unknown_sea(model_.interval_s, settings_.order, split.noise_m2ps3);
     model_.autocovariance_m2 *= kLeastSea;

@@ -14,7 +14,7 @@ namespace waverig::estimator {
 struct SeaIdentifierSettings {
   int order = 96;                       // of the autoregression
   double interval_s = kFineInterval_s;  // between the model's nodes; 0: as suits the sea
-  int block = 512;                      // fine nodes of a periodogram: 128 s
+  int block = 640;                      // fine nodes of a periodogram: 160 s
   int every = 64;                       // fine nodes from one periodogram to the next; sooner at first
   double memory_s = 300;                // of the density; 0: never forgets
   double guess_weight = 0.01;           // of the guess beside periodograms, in whole blocks
@@ -35,6 +35,7 @@ class SeaIdentifier {
   void forget();                                    // the sea is another one from about now on
   int age() const { return age_; }                  // nodes since the start, or since it forgot
   const SeaModel& model() const { return model_; }  // as last identified
+  bool calm() const;                                // no sea to speak of, as last identified
 
  private:
   void periodogram();

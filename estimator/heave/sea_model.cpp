@@ -8,12 +8,12 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kRidge = 1e-5;             // of the variance: white, so that no frequency is ruled out
-constexpr double kBiasCorner_radps = 0.02;  // below it the bias walk outweighs the noise: half the data
-                                            // sheet's, whose 0.1 mg in 100 s need 0.05
-constexpr double kFast_hz = 0.5;            // half of what nodes half a second apart can tell
-constexpr double kFastShare = 0.02;         // of the sea's variance above it: needs the fine nodes
+constexpr double kBiasCorner_radps = 0.035;  // below it the bias walk outweighs the noise: somewhat less than
+                                             // the data sheet's, whose 0.1 mg in 100 s need 0.05
+constexpr double kFast_hz = 0.5;             // half of what nodes half a second apart can tell
+constexpr double kFastShare = 0.02;          // of the sea's variance above it: needs the fine nodes
 constexpr double kUnknownPeak_hz = 1.0 / 14;
+constexpr double kUnknownRidge = 1e-5;
 
 }  // namespace
 
@@ -41,7 +41,8 @@ void SeaModel::set_noise(double density_m2ps3) {
   bias_walk_m2ps5 = density_m2ps3 * kBiasCorner_radps * kBiasCorner_radps;
 }
 
-SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double interval_s, int order) {
+SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double interval_s, int order,
+                          double ridge) {
   SeaModel model;
   model.interval_s = interval_s;
   model.autocovariance_m2.setZero(order + 1);
@@ -59,7 +60,7 @@ SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double i
   }
   model.mean_frequency_radps =
       model.autocovariance_m2[0] > 0 ? std::sqrt(m2 / model.autocovariance_m2[0]) : 0.0;
-  model.autocovariance_m2[0] *= 1 + kRidge;
+  model.autocovariance_m2[0] *= 1 + ridge;
   const Predictors predictors = levinson(model.autocovariance_m2);
   model.ar = predictors.coefficients.back();
   model.innovation_m2 = predictors.variance.back();
@@ -77,7 +78,7 @@ SeaModel unknown_sea(double interval_s, int order, double accel_noise_m2ps3) {
   const double df = 0.5 / kFineInterval_s / kBins;
   Eigen::VectorXd density = Eigen::VectorXd::Zero(kBins + 1);
   for (int i = 1; i <= kBins; ++i) density[i] = unknown_sea_density_m2s(df * i);
-  SeaModel model = model_of_density(density, df, interval_s, order);
+  SeaModel model = model_of_density(density, df, interval_s, order, kUnknownRidge);
   model.set_noise(accel_noise_m2ps3);
   return model;
 }

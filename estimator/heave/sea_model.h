@@ -35,8 +35,9 @@ struct Predictors {
 Predictors levinson(const Eigen::VectorXd& autocovariance);
 
 // The model, with nodes interval_s apart, of a sea with the given density of heave (two-sided, m^2 s, at i *
-// df_hz).
-SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double interval_s, int order);
+// df_hz). ridge: of the variance, white: how far no frequency is ruled out.
+SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double interval_s, int order,
+                          double ridge);
 
 // The fine interval for a sea with much above half a hertz, twice as wide for all others: the order then
 // reaches over some three periods. present_s: of the model that stands, which is kept in doubt.

@@ -65,6 +65,23 @@ TEST(RealData, HandMovedBoardComesOutAsTheCamerasSawIt) {
   EXPECT_LT(moving_rms("realtime", samples, truth), 0.03);
 }
 
+// The rest before the motion is 37 s long; less of it must do.
+TEST(RealData, RealtimeFollowsTheMotionHoweverShortTheRestBefore) {
+  const auto imu = recordings() / "broad10_translation.csv.gz";
+  WAVERIG_NEEDS_RECORDING(imu);
+  const auto all = read_samples(imu);
+  const auto seen = evaluation::read_heave_csv(recordings() / "broad10_translation.truth.csv.gz");
+  for (const double left_out_s : {4.0, 10.0, 16.0, 20.0}) {
+    std::ptrdiff_t first = 0;
+    while (static_cast<double>(all[static_cast<std::size_t>(first)].utime - all[0].utime) * kMicrosecond < left_out_s)
+      ++first;
+    evaluation::HeaveSeries truth = seen;
+    truth.heave_m.erase(truth.heave_m.begin(), truth.heave_m.begin() + first);
+    truth.moving.erase(truth.moving.begin(), truth.moving.begin() + first);
+    EXPECT_LT(moving_rms("realtime", {all.begin() + first, all.end()}, truth), 0.03) << left_out_s << " s left out";
+  }
+}
+
 TEST(RealData, ARotationRecordingCalibratesIt) {
   const auto rotation = recordings() / "broad01_rotation.csv.gz", imu = recordings() / "broad10_translation.csv.gz";
   WAVERIG_NEEDS_RECORDING(rotation);

@@ -185,6 +185,38 @@ TEST(Realtime, StatesASigmaThatHolds) {
   EXPECT_LT(squared / n, 1.6);
 }
 
+// Waves longer than the first blocks of samples can tell from drift.
+TEST(Realtime, IsNotLostInLongRegularWavesAtTheStart) {
+  for (const double period_s : {16, 20}) {
+    double squares = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      SyntheticWaves waves;
+      waves.period_s = period_s;
+      waves.height_m = 1;
+      waves.swing = Swing::kForced;
+      waves.duration_s = 60;
+      waves.phase_rad = 2 * static_cast<double>(seed);
+      const SyntheticRecord record = synthesize(waves, calibrated_errors(seed), seed);
+      const Collector out = run_realtime(record.samples);
+      for (std::size_t i = 2000; i < out.heaves.size(); ++i)
+        squares += square(out.heaves[i].heave_m - record.heave_m[i]) / static_cast<double>(out.heaves.size() - 2000) / 4;
+    }
+    EXPECT_LT(std::sqrt(squares / 2), 0.12) << period_s << " s";  // Hm0 is sqrt(2) heights
+  }
+}
+
+// The guess of the sea must not live on where the simulated spectrum happens to end.
+TEST(Realtime, KnowsTheSeaWithinSecondsWhereverItsSpectrumEnds) {
+  for (const double tail_end : {3.5, 7.0, 10.0}) {
+    double squares = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 120, .tail_end = tail_end}, seed);
+      squares += square(rms_over_hm0(run_realtime(record.samples).heaves, record, 1500, 12000)) / 6;
+    }
+    EXPECT_LT(std::sqrt(squares), 0.06) << "tail to " << tail_end << " fp";
+  }
+}
+
 TEST(Realtime, FollowsASeaThatGrowsAndLengthens) {
   const SeaRecord first = sea_record({.tp_s = 5, .hm0_m = 0.5, .duration_s = 600}, 5);
   SeaRecord both = first;

@@ -18,6 +18,7 @@ struct SeaCase {
   double duration_s = 1200, rate_Hz = 100;
   double slope_following = 1;
   double swell_tp_s = 0, swell_hm0_m = 0;  // another sea under it, from elsewhere
+  double tail_end = 5;                     // peak frequencies
   bool perfect_sensor = false;
 };
 
@@ -82,7 +83,9 @@ SeaRecord recorded(const SeaCase& c, std::uint64_t seed, Motion motion) {
 }
 
 inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
-  auto components = motion::draw_components(sea_settings(c.tp_s, c.hm0_m, seed));
+  motion::SeaSettings sea = sea_settings(c.tp_s, c.hm0_m, seed);
+  sea.highest_relative = c.tail_end;
+  auto components = motion::draw_components(sea);
   if (c.swell_hm0_m > 0) {
     auto swell = sea_settings(c.swell_tp_s, c.swell_hm0_m, seed + 1000);
     swell.direction_from_rad = 2.5;
