@@ -14,10 +14,11 @@ constexpr int kPeriods = 16;
 constexpr double kShortest_s = 2, kRatio = 1.15;   // of the peak periods
 constexpr double kSteepness_s2m = 0.035;           // Hm0 = kSteepness Tp^2, a usual sea
 constexpr std::array kHeights = {1.0, 0.1, 0.01};  // of the usual; the least is noise
-constexpr std::array kTailEnds = {3.0, 3.6, 4.3, 5.2,
-                                  6.2, 7.5, 9.0, 1e3};  // peak frequencies; the last: none
-constexpr double kRidge = 1e-6;                         // of the variance, white
-constexpr double kPriorValues = 1;                      // as many values say that the size is the candidate's
+// Where the spectrum ends, peak frequencies; the last does not.
+constexpr std::array kTailEnds = {3.0, 3.6, 4.3, 5.2, 6.2, 7.5, 9.0, 1e3};
+constexpr double kRidge = 1e-6;       // of the variance, white
+constexpr double kPriorValues = 1;    // as many values say that the size is the candidate's
+constexpr double kNegligible = 1e-8;  // likelihood, beside the best one's
 
 // S(f) ~ f^-5 exp(-5/4 (fp/f)^4), whose integral is 1 / (5 fp^4). Two-sided.
 double pierson_moskowitz(double variance_m2, double peak_hz, double f_hz) {
@@ -39,8 +40,10 @@ SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3)
     for (const double height : kHeights)
       for (const double end : kTailEnds) {
         const double tp_s = kShortest_s * std::pow(kRatio, p), hm0_m = height * kSteepness_s2m * tp_s * tp_s;
-        Candidate c{
-            .density_m2s = Eigen::VectorXd::Zero(bins), .predictors = {}, .prior = std::pow(height, 3)};
+        Candidate c{.density_m2s = Eigen::VectorXd::Zero(bins),
+                    .predictors = {},
+                    .log_variance = {},
+                    .prior = std::pow(height, 3)};
         for (Eigen::Index i = 1; i < bins; ++i) {
           const double f = df_hz * static_cast<double>(i);
           if (f * tp_s < end) c.density_m2s[i] = pierson_moskowitz(hm0_m * hm0_m / 16, 1 / tp_s, f);
@@ -50,6 +53,7 @@ SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3)
         Eigen::VectorXd r = 2 * df_hz * (lags * turned.cwiseProduct(seen));
         r[0] *= 1 + kRidge;
         c.predictors = levinson(r);
+        for (const double variance : c.predictors.variance) c.log_variance.push_back(std::log(variance));
         candidates_.push_back(std::move(c));
       }
   restart();
@@ -74,7 +78,7 @@ void SeaGuess::add(double second_difference_m) {
     const Eigen::VectorXd& a = c.predictors.coefficients[m];
     const double error = value - a.dot(newest_.head(a.size()));
     c.errors += error * error / c.predictors.variance[m];
-    c.log_variances += std::log(c.predictors.variance[m]);
+    c.log_variances += c.log_variance[m];
   }
   for (Eigen::Index i = kOrder - 1; i > 0; --i) newest_[i] = newest_[i - 1];
   newest_[0] = value;
@@ -90,9 +94,11 @@ Eigen::VectorXd SeaGuess::density_m2s() const {
   for (const Candidate& c : candidates_) best = std::max(best, log_likelihood(c));
   Eigen::VectorXd density = Eigen::VectorXd::Zero(candidates_.front().density_m2s.size());
   for (const Candidate& c : candidates_) {
+    const double likelihood = std::exp(log_likelihood(c) - best);
+    if (likelihood < kNegligible) continue;
     const double by_variance = (squares_m2_ / c.variance_m2 + kPriorValues) / n;
     const Eigen::VectorXd sea = std::max(size(c), by_variance) * c.density_m2s;
-    const double weight = c.prior * std::exp(log_likelihood(c) - best) / sea.sum();
+    const double weight = c.prior * likelihood / sea.sum();
     density += weight * sea;
     sum += weight;
   }

@@ -31,10 +31,11 @@ class SeaGuess {
   struct Candidate {
     Eigen::VectorXd density_m2s;
     Predictors predictors;
-    double prior = 1;          // flat seas are less usual than steep ones
-    double variance_m2 = 0;    // of the second differences
-    double errors = 0;         // sum of squared prediction errors over their variances
-    double log_variances = 0;  // sum
+    std::vector<double> log_variance;  // of the predictors
+    double prior = 1;                  // flat seas are less usual than steep ones
+    double variance_m2 = 0;            // of the second differences
+    double errors = 0;                 // sum of squared prediction errors over their variances
+    double log_variances = 0;          // sum
   };
   std::vector<Candidate> candidates_;
   Eigen::VectorXd newest_;                           // differences of second differences, newest first
