@@ -13,6 +13,7 @@ constexpr int kFirstSteps = 2;         // nodes from the first guess to the seco
 constexpr int kKept = 16;              // of the old sea's nodes, which saw the new one begin
 constexpr double kResolved = 2.5;      // cycles a block: what a Hann window keeps apart from the mean
 constexpr double kUnlike = 0.6;        // divergence from which on a guess tells little
+constexpr double kCameUp = 0.1;        // of a guess's weight, of a sea that came up
 constexpr double kLeastShare = 1e-9;   // of a sea in one bin
 constexpr double kFirstRidge = 3e-6;   // of a sea's variance, as model_of_density has it
 constexpr double kRidge = 1e-7;        // of a sea well known
@@ -55,6 +56,7 @@ SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
 void SeaIdentifier::restart() {
   gap();
   guesses_ = true;
+  came_up_ = false;
   weight_ = 0;
   age_ = 0;
   until_next_ = kFirstGuess;
@@ -68,10 +70,12 @@ void SeaIdentifier::gap() {
 
 void SeaIdentifier::forget() {
   if (std::ssize(newest_) > kKept) newest_.erase(newest_.begin(), newest_.end() - kKept);
-  guesses_ = false;
+  guesses_ = calm();
+  came_up_ = true;
+  guess_.restart();
   weight_ = 0;
   age_ = 0;
-  until_next_ = kShortest - kKept;
+  until_next_ = guesses_ ? kFirstSteps : kShortest - kKept;
 }
 
 bool SeaIdentifier::add(const PathIncrement& increment) {
@@ -111,16 +115,22 @@ const SeaModel& SeaIdentifier::identify(double swell) {
   if (weight_ > 0) {
     const Eigen::VectorXd guess = sea;
     split = split_sea_from_noise(density_, kDt, settings_.accel_noise_m2ps3, lowest_hz_);
-    // What is too slow to be resolved yet is as guessed; where nothing guesses, as in a sea that came up and
-    // has not grown its longest waves yet, in proportion to the rest.
+    // What is too slow to be resolved yet is as guessed; in a sea that came up and has not grown its longest
+    // waves yet, in proportion to the rest.
     const auto slow = static_cast<Eigen::Index>(lowest_hz_ / df) + 1, fast = sea.size() - slow;
-    const double guessed_m2s = guess.tail(fast).sum();
-    const double size = guessed_m2s > 0 ? sea.tail(fast).sum() / guessed_m2s : 0;
-    sea.head(slow) = (guesses_ ? 1 : kYoung * size) * guess.head(slow);
+    const double resolved_m2s = sea.tail(fast).sum();
+    const auto size = [&](const Eigen::VectorXd& shape) {
+      const double sum = shape.tail(fast).sum();
+      return sum > 0 ? resolved_m2s / sum : 0;
+    };
+    if (came_up_)
+      sea.head(slow) = kYoung * size(unknown_) * unknown_.head(slow);
+    else
+      sea.head(slow) = guess.head(slow);
     if (guesses_) {
-      const double guessed =
-          settings_.guess_weight * std::exp(-square(divergence(sea.tail(fast), guess.tail(fast)) / kUnlike));
-      sea.tail(fast) += guessed / (guessed + weight_) * (size * guess.tail(fast) - sea.tail(fast));
+      const double guessed = (came_up_ ? kCameUp : 1) * settings_.guess_weight *
+                             std::exp(-square(divergence(sea.tail(fast), guess.tail(fast)) / kUnlike));
+      sea.tail(fast) += guessed / (guessed + weight_) * (size(guess) * guess.tail(fast) - sea.tail(fast));
     }
   }
   const double interval_s =

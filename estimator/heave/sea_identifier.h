@@ -43,8 +43,9 @@ class SeaIdentifier {
   SeaIdentifierSettings settings_;
   Periodogram periodogram_;
   SeaGuess guess_;
-  bool guesses_ = true;      // from the record's start: whatever comes upon a sea is no sea of a known shape
-  Eigen::VectorXd unknown_;  // density of the unknown sea
+  bool guesses_ = true;         // from the record's start, or out of a calm: of other seas nothing is guessed
+  bool came_up_ = false;        // the sea is not the record's first
+  Eigen::VectorXd unknown_;     // density of the unknown sea
   std::vector<double> newest_;  // second differences, oldest first
   int until_next_ = 0, age_ = 0;
   PathIncrement last_;
