@@ -3,7 +3,8 @@
 // State: the last `order` heaves z(k) … z(k-order+1), and drift (d, d', b). Measurement: the path, the
 // acceleration's double integral, which is z(k) + d(k) exactly. Each step's drift is taken out of the path at
 // once, so that path and speed are the estimate; the older heaves in the state are fixed-lag smoothed by
-// every later measurement.
+// every later measurement. What surprises is taken for sea, not for drift: in a steady sea only what no such
+// sea does, in a restless one (that rises, or is made by hand) whatever is larger than usual.
 #pragma once
 #include <Eigen/Core>
 #include <limits>
