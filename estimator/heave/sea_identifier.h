@@ -30,10 +30,10 @@ class SeaIdentifier {
   // By all that was added. swell: variance of a long swell under the guessed sea, relative to it; nothing
   // that is seen at a few nodes tells of it.
   const SeaModel& identify(double swell = 0);
-  void restart();                                   // nothing was added
-  void gap();                                       // the next increment does not follow on the last
-  void forget();                                    // the sea is another one from about now on
-  int age() const { return age_; }                  // nodes since the start, or since it forgot
+  void restart();                   // nothing was added
+  void gap();                       // the next increment does not follow on the last
+  void forget();                    // the sea is another one from about now on; out of a calm it is guessed
+  int age() const { return age_; }  // nodes since the start, or since it forgot
   const SeaModel& model() const { return model_; }  // as last identified
   bool calm() const;                                // no sea to speak of, as last identified
 
