@@ -15,7 +15,7 @@ struct Surprise {
 };
 constexpr Surprise kSteady{12, 3}, kRestless{2, 2};
 // A mean over some 30 s of innovations squared over their variance, each at most kMostRestless, beyond which
-// a sea is restless: of seas of one spectrum it is 0.3 to 1.1, of a board moved by hand 1.3 to 3.
+// a sea is restless: of seas of one spectrum it is 0.2 to 1.1, of a board moved by hand 1.3 to 3.
 constexpr double kRestlessFrom = 1.25, kRestlessShare = 1.0 / 120, kMostRestless = 30;
 constexpr double kUsualGrowth = 1.02;  // a node; how soon the variance of innovations is found to have grown
 constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
