@@ -9,7 +9,7 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kTiltCorrelation_s = 1.0;     // of what a tilt error does to the vertical
+constexpr double kTiltCorrelation_s = 0.3;     // of what a tilt error does to the vertical
 constexpr double kOffsetCorrelation_s = 0.05;  // of what a turned offset does to it
 constexpr double kSteadyTilt_rad = 0.25 * kDegree;
 constexpr double kSaturatedNoise_m2ps3 = 1.0;  // several m/s^2 for tenths of a second
@@ -37,7 +37,7 @@ AttitudeSettings attitude_settings(const SensorKnowledge& sensor) {
 double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, double gravity_mps2) {
   // A settled attitude errs slowly: what it lets in lies at the waves' own frequencies and makes no drift.
   const double tilt2 = std::max(square(attitude.tilt_sigma_rad) - square(kSteadyTilt_rad), 0.0);
-  const double noise = tilt2 * attitude.a_N.head<2>().squaredNorm() + square(gravity_mps2 * tilt2);
+  const double noise = tilt2 * attitude.a_N.head<2>().squaredNorm() + square(gravity_mps2 * tilt2 / 2);
   return kTiltCorrelation_s * noise + (flags & flag::kSaturation ? kSaturatedNoise_m2ps3 : 0.0);
 }
 
@@ -55,10 +55,13 @@ void Motion::follow(const AttitudeSample& attitude, double share) {
   excess_mps2 += share * (attitude.a_N.z() - excess_mps2);
 }
 
+double offset_sigma_mps2(const SensorKnowledge& s) {
+  return std::hypot(s.accel_bias_sigma_mps2, s.accel_scale_sigma * s.gravity_mps2, s.gravity_sigma_mps2);
+}
+
 double offset_sigma_mps2(const Motion& motion, const SeaModel& sea, double elapsed_s,
                          const SensorKnowledge& s) {
-  const double known =
-      2 * std::hypot(s.accel_bias_sigma_mps2, s.accel_scale_sigma * s.gravity_mps2, s.gravity_sigma_mps2);
+  const double known = offset_sigma_mps2(s);
   // A mean acceleration is the change of speed over the time.
   const double speed_mps = sea.mean_frequency_radps * std::sqrt(sea.heave_variance_m2());
   const double chance = std::hypot(known, std::numbers::sqrt2 * speed_mps / elapsed_s);

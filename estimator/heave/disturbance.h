@@ -21,7 +21,7 @@ struct Motion {
 
 // Two-sided densities of white vertical acceleration, m^2/s^3, by which a sample is worse than the sensor's
 // noise. A tilt error of the stated size lets in horizontal acceleration to first and gravity to second
-// order; a saturated sample says little.
+// order, g tilt^2 / 2; a saturated sample says little.
 double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, double gravity_mps2);
 // An offset is turned over as the body leans away from its mean. For as long as no record shows the noise
 // that makes.
@@ -38,8 +38,10 @@ struct MeanDisturbance {
   double mean() const { return count > 0 ? sum_m2ps3 / count : 0.0; }
 };
 
-// Standard uncertainty of the mean vertical acceleration, after motion.excess_mps2 was found in a sea's
-// elapsed_s: twice what calibration and gravity leave, or the excess where they cannot have left it.
+// Standard uncertainty of the mean vertical acceleration, by what calibration and gravity leave.
+double offset_sigma_mps2(const SensorKnowledge& sensor);
+// The same after motion.excess_mps2 was found in a sea's elapsed_s: the excess, where they cannot have left
+// it.
 double offset_sigma_mps2(const Motion& motion, const SeaModel& sea, double elapsed_s,
                          const SensorKnowledge& sensor);
 

@@ -9,7 +9,7 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kStandsOut = 6;         // times the noise: there is sea
+constexpr double kStandsOut = 12;  // times the least level, itself below the noise by chance: there is sea
 constexpr double kSeesNoise_hz = 0.025;  // blocks of 100 s
 constexpr double kLowestSea_hz = 0.02;   // longer waves are no wind sea nor swell
 constexpr double kLeastNoise = 0.05;     // of what was assumed

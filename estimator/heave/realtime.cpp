@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -20,16 +21,20 @@ constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
 constexpr double kRethought_s = 60;
 constexpr std::array kSwells = {5e-4, 0.03, 0.5};  // relative variances, of which one is believed
+constexpr double kChosenAgain = 1.5;               // times the nodes, while the sea is guessed
 constexpr double kGuessWeight = 3;                 // periodograms of less than a minute tell little
+constexpr double kOffsetDoubt = 2;                 // a sensor that is off is not to be taken for a swell
 constexpr std::size_t kMostRethought = 60'000;     // samples
 constexpr double kAtOnce = 1.1;
 
 double square(double x) { return x * x; }
 
-SeaIdentifierSettings identifier_settings(const AttitudeSettings& attitude) {
+SeaIdentifierSettings identifier_settings(const SensorKnowledge& sensor) {
   SeaIdentifierSettings s;
   s.guess_weight = kGuessWeight;
-  s.accel_noise_m2ps3 = square(attitude.accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
+  s.accel_noise_m2ps3 =
+      square(attitude_settings(sensor).accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
+  s.offset_sigma_mps2 = kOffsetDoubt * offset_sigma_mps2(sensor);
   return s;
 }
 
@@ -39,7 +44,7 @@ Realtime::Realtime(const MethodSettings& settings)
     : settings_(settings),
       attitude_(attitude_settings(settings.sensor)),
       integrator_(kFineInterval_s),
-      identifier_(identifier_settings(attitude_settings(settings.sensor))),
+      identifier_(identifier_settings(settings.sensor)),
       filter_(identifier_.model(), 0),
       counter_(settings.sensor) {
   const double longest = (filter_.order() - 2) * kFineInterval_s;
@@ -144,13 +149,21 @@ void Realtime::filter(const Step& step) {
 // it, the one which makes the path most probable.
 HeaveFilter Realtime::most_probable(const std::vector<Step>& steps) {
   const double elapsed_s = static_cast<double>(nodes_) * kFineInterval_s;
+  const bool choose = identifier_.has_spectrum() ||
+                      static_cast<double>(nodes_) >= kChosenAgain * static_cast<double>(chosen_at_);
+  if (choose) chosen_at_ = nodes_;
   std::optional<HeaveFilter> best;
-  for (const double swell : kSwells) {
+  double chosen = swell_;
+  for (const double swell : choose ? std::span<const double>(kSwells) : std::span<const double>(&swell_, 1)) {
     const SeaModel& sea = identifier_.identify(swell);
     HeaveFilter filter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor));
     for (const Step& step : steps) filter.step(step.increment, step.disturbance_m2ps3);
-    if (!best || filter.log_likelihood() > best->log_likelihood()) best = std::move(filter);
+    if (!best || filter.log_likelihood() > best->log_likelihood()) {
+      best = std::move(filter);
+      chosen = swell;
+    }
   }
+  swell_ = chosen;
   return *std::move(best);
 }
 

@@ -64,6 +64,8 @@ class Realtime : public Method {
   std::int32_t pending_flags_ = 0;
   static constexpr int kOldEnough = 120, kOldestEnough = 480;
   int old_enough_ = kOldEnough;  // fine nodes of one sea before another one is believed
+  double swell_ = 0;             // as last chosen,
+  std::int64_t chosen_at_ = 0;   // after this many nodes
   MeanDisturbance disturbance_;  // since the last node
   Motion motion_;
   bool started_ = false, rethinks_ = true, due_ = false;

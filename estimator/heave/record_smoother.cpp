@@ -53,13 +53,15 @@ Piece integrate(const Record& record, const std::vector<AttitudeSample>& attitud
   return piece;
 }
 
-SeaModel identify(std::span<const Piece> pieces, const AttitudeSettings& attitude) {
+SeaModel identify(std::span<const Piece> pieces, const SensorKnowledge& sensor) {
   SeaIdentifierSettings settings;
   settings.order = kOrder;
   settings.interval_s = 0;  // as suits the sea
   settings.block = kBlock;
   settings.memory_s = 0;
-  settings.accel_noise_m2ps3 = square(attitude.accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
+  settings.accel_noise_m2ps3 =
+      square(attitude_settings(sensor).accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
+  settings.offset_sigma_mps2 = offset_sigma_mps2(sensor);
   SeaIdentifier identifier(settings);
   for (const Piece& piece : pieces) {
     identifier.gap();
@@ -129,7 +131,7 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
     return pieces;
   };
   std::vector<Piece> pieces = pieces_with(kFineInterval_s);
-  smoothed.sea = identify(pieces, settings);
+  smoothed.sea = identify(pieces, sensor);
   const double interval_s = smoothed.sea.interval_s;
   if (interval_s != kFineInterval_s) pieces = pieces_with(interval_s);
   smoothed.heave.resize(samples.size());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace waverig::estimator {
@@ -28,77 +27,83 @@ double pierson_moskowitz(double variance_m2, double peak_hz, double f_hz) {
 
 }  // namespace
 
-SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3)
+SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3, double offset_sigma_mps2)
     : newest_(Eigen::VectorXd::Zero(kOrder)) {
   const Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(bins, 0, std::numbers::pi);  // a node
   const double df_hz = w[1] / (2 * std::numbers::pi * dt_s);
   const Eigen::VectorXd turned = 2 - 2 * w.array().cos();
   const Eigen::VectorXd noise = accel_noise_m2ps3 * std::pow(dt_s, 4) * (2 + w.array().cos()) / 3;
+  const double offset_m = offset_sigma_mps2 * dt_s * dt_s;
   Eigen::MatrixXd lags(kOrder + 1, bins);
   for (int j = 0; j <= kOrder; ++j) lags.row(j) = (j * w.array()).cos();
+  std::vector<Predictors> predictors;
   for (int p = 0; p < kPeriods; ++p)
     for (const double height : kHeights)
       for (const double end : kTailEnds) {
         const double tp_s = kShortest_s * std::pow(kRatio, p), hm0_m = height * kSteepness_s2m * tp_s * tp_s;
-        Candidate c{.density_m2s = Eigen::VectorXd::Zero(bins),
-                    .predictors = {},
-                    .log_variance = {},
-                    .prior = std::pow(height, 3)};
+        Candidate c{.density_m2s = Eigen::VectorXd::Zero(bins), .prior = std::pow(height, 3)};
         for (Eigen::Index i = 1; i < bins; ++i) {
           const double f = df_hz * static_cast<double>(i);
           if (f * tp_s < end) c.density_m2s[i] = pierson_moskowitz(hm0_m * hm0_m / 16, 1 / tp_s, f);
         }
         const Eigen::VectorXd seen = turned.cwiseAbs2().cwiseProduct(c.density_m2s) + noise;
         c.variance_m2 = 2 * df_hz * seen.tail(bins - 1).sum();
-        Eigen::VectorXd r = 2 * df_hz * (lags * turned.cwiseProduct(seen));
+        Eigen::VectorXd r = 2 * df_hz * (lags * seen);
         r[0] *= 1 + kRidge;
-        c.predictors = levinson(r);
-        for (const double variance : c.predictors.variance) c.log_variance.push_back(std::log(variance));
+        r.array() += offset_m * offset_m;
+        predictors.push_back(levinson(r));
         candidates_.push_back(std::move(c));
       }
+  const auto count = std::ssize(candidates_);
+  for (int m = 0; m <= kOrder; ++m) {
+    const auto order = static_cast<std::size_t>(m);
+    OnePredictors one{Eigen::MatrixXd(count, m), Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Predictors& p = predictors[static_cast<std::size_t>(i)];
+      one.coefficients.row(i) = p.coefficients[order];
+      one.variance_m2[i] = p.variance[order];
+    }
+    one.log_variance = one.variance_m2.log();
+    predictors_.push_back(std::move(one));
+  }
   restart();
 }
 
 void SeaGuess::restart() {
-  for (Candidate& c : candidates_) c.errors = c.log_variances = 0;
-  seen_ = -1;
+  errors_ = log_variances_ = Eigen::ArrayXd::Zero(std::ssize(candidates_));
+  seen_ = in_a_row_ = 0;
   mean_m_ = squares_m2_ = 0;
 }
 
+void SeaGuess::gap() { in_a_row_ = 0; }
+
 void SeaGuess::add(double second_difference_m) {
-  const double value = second_difference_m - last_m_;
-  last_m_ = second_difference_m;
-  ++seen_;
   const double off_m = second_difference_m - mean_m_;  // Welford 1962
   mean_m_ += off_m / (seen_ + 1);
   squares_m2_ += off_m * (second_difference_m - mean_m_);
-  if (seen_ == 0) return;
-  const auto m = static_cast<std::size_t>(std::min(seen_ - 1, kOrder));
-  for (Candidate& c : candidates_) {
-    const Eigen::VectorXd& a = c.predictors.coefficients[m];
-    const double error = value - a.dot(newest_.head(a.size()));
-    c.errors += error * error / c.predictors.variance[m];
-    c.log_variances += c.log_variance[m];
-  }
+  const OnePredictors& p = predictors_[static_cast<std::size_t>(std::min(in_a_row_, kOrder))];
+  const Eigen::VectorXd predicted = p.coefficients * newest_.head(p.coefficients.cols());
+  errors_ += (second_difference_m - predicted.array()).square() / p.variance_m2;
+  log_variances_ += p.log_variance;
   for (Eigen::Index i = kOrder - 1; i > 0; --i) newest_[i] = newest_[i - 1];
-  newest_[0] = value;
+  newest_[0] = second_difference_m;
+  ++seen_;
+  ++in_a_row_;
 }
 
 Eigen::VectorXd SeaGuess::density_m2s() const {
-  const double n = std::max(seen_, 0) + kPriorValues;
-  const auto size = [&](const Candidate& c) { return (c.errors + kPriorValues) / n; };
-  const auto log_likelihood = [&](const Candidate& c) {
-    return -0.5 * (n * std::log(size(c)) + c.log_variances);
-  };
-  double best = -std::numeric_limits<double>::infinity(), sum = 0;
-  for (const Candidate& c : candidates_) best = std::max(best, log_likelihood(c));
+  const double n = seen_ + kPriorValues;
+  const Eigen::ArrayXd size = (errors_ + kPriorValues) / n;
+  const Eigen::ArrayXd log_likelihood = -0.5 * (n * size.log() + log_variances_);
+  const Eigen::ArrayXd likelihood = (log_likelihood - log_likelihood.maxCoeff()).exp();
   Eigen::VectorXd density = Eigen::VectorXd::Zero(candidates_.front().density_m2s.size());
-  for (const Candidate& c : candidates_) {
-    const double likelihood = std::exp(log_likelihood(c) - best);
-    if (likelihood < kNegligible) continue;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < likelihood.size(); ++i) {
+    if (likelihood[i] < kNegligible) continue;
+    const Candidate& c = candidates_[static_cast<std::size_t>(i)];
     const double by_variance = (squares_m2_ / c.variance_m2 + kPriorValues) / n;
-    const Eigen::VectorXd sea = std::max(size(c), by_variance) * c.density_m2s;
-    const double weight = c.prior * likelihood / sea.sum();
+    const Eigen::VectorXd sea = std::max(size[i], by_variance) * c.density_m2s;
+    const double weight = c.prior * likelihood[i] / sea.sum();
     density += weight * sea;
     sum += weight;
   }

@@ -18,29 +18,30 @@ namespace waverig::estimator {
 class SeaGuess {
  public:
   // dt_s: between nodes. bins: of the densities, at i / (2 (bins - 1) dt).
-  SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3);
-  void restart();
-  // The next second difference of the path (node_spectrum.h). Their differences are what is predicted: a
-  // constant acceleration, of the sensor's bias, tells nothing.
-  void add(double second_difference_m);
-  int seen() const { return seen_; }
+  // offset_sigma_mps2: standard uncertainty of the mean vertical acceleration, the sensor's offset.
+  SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3, double offset_sigma_mps2);
+  void restart();                        // nothing was seen
+  void gap();                            // the next value does not follow on the last
+  void add(double second_difference_m);  // the next of the path (node_spectrum.h)
   // Two-sided, m^2 s. Of nothing seen yet: each candidate alike, at a usual steepness.
   Eigen::VectorXd density_m2s() const;
 
  private:
   struct Candidate {
     Eigen::VectorXd density_m2s;
-    Predictors predictors;
-    std::vector<double> log_variance;  // of the predictors
-    double prior = 1;                  // flat seas are less usual than steep ones
-    double variance_m2 = 0;            // of the second differences
-    double errors = 0;                 // sum of squared prediction errors over their variances
-    double log_variances = 0;          // sum
+    double prior = 1;        // flat seas are less usual than steep ones
+    double variance_m2 = 0;  // of the second differences
+  };
+  struct OnePredictors {  // of one order, a row a candidate
+    Eigen::MatrixXd coefficients;
+    Eigen::ArrayXd variance_m2, log_variance;
   };
   std::vector<Candidate> candidates_;
-  Eigen::VectorXd newest_;                           // differences of second differences, newest first
-  double last_m_ = 0, mean_m_ = 0, squares_m2_ = 0;  // second differences: last, mean, squares about it
-  int seen_ = 0;
+  std::vector<OnePredictors> predictors_;  // by order
+  Eigen::ArrayXd errors_, log_variances_;  // of each candidate: sums; squared errors are over their variances
+  Eigen::VectorXd newest_;                 // second differences, newest first
+  double mean_m_ = 0, squares_m2_ = 0;     // of second differences; squares about the mean
+  int seen_ = 0, in_a_row_ = 0;
 };
 
 }  // namespace waverig::estimator

@@ -9,7 +9,8 @@ namespace {
 constexpr double kDt = kFineInterval_s;
 constexpr int kFirstGuess = 1;         // nodes before the first guess
 constexpr int kShortest = 56;          // nodes before the first periodogram: 14 s
-constexpr int kFirstSteps = 2;         // nodes from the first guess to the second
+constexpr int kGuesses = 12;           // a guess is made again when a twelfth more is seen
+constexpr int kGuessed = 80;           // nodes for which the guess is better than any periodogram: 20 s
 constexpr int kKept = 16;              // of the old sea's nodes, which saw the new one begin
 constexpr double kResolved = 2.5;      // cycles a block: what a Hann window keeps apart from the mean
 constexpr double kUnlike = 0.6;        // divergence from which on a guess tells little
@@ -42,7 +43,7 @@ double divergence(const Eigen::VectorXd& seen, const Eigen::VectorXd& guess) {
 SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
     : settings_(settings),
       periodogram_(settings.block),
-      guess_(kDt, settings.block / 2 + 1, settings.accel_noise_m2ps3),
+      guess_(kDt, settings.block / 2 + 1, settings.accel_noise_m2ps3, settings.offset_sigma_mps2),
       until_next_(kFirstGuess),
       density_(Eigen::VectorXd::Zero(settings.block / 2 + 1)),
       model_(unknown_sea(settings.interval_s > 0 ? settings.interval_s : 2 * kFineInterval_s, settings.order,
@@ -55,6 +56,7 @@ SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
 
 void SeaIdentifier::restart() {
   gap();
+  guess_.restart();
   guesses_ = true;
   came_up_ = false;
   weight_ = 0;
@@ -65,7 +67,7 @@ void SeaIdentifier::restart() {
 void SeaIdentifier::gap() {
   has_last_ = false;
   newest_.clear();
-  guess_.restart();
+  guess_.gap();
 }
 
 void SeaIdentifier::forget() {
@@ -75,7 +77,7 @@ void SeaIdentifier::forget() {
   guess_.restart();
   weight_ = 0;
   age_ = 0;
-  until_next_ = guesses_ ? kFirstSteps : kShortest - kKept;
+  until_next_ = guesses_ ? kFirstGuess : kShortest - kKept;
 }
 
 bool SeaIdentifier::add(const PathIncrement& increment) {
@@ -89,10 +91,11 @@ bool SeaIdentifier::add(const PathIncrement& increment) {
   if (--until_next_ > 0 || std::ssize(newest_) < (guesses_ ? kFirstGuess : kShortest)) return false;
   const auto block = static_cast<std::ptrdiff_t>(settings_.block);
   if (std::ssize(newest_) > block) newest_.erase(newest_.begin(), newest_.end() - block);
+  const auto n = static_cast<int>(newest_.size());
+  const bool guess_alone = guesses_ && n < (came_up_ ? kShortest : kGuessed);
+  if (!guess_alone) periodogram();
   // Where there is a guess, periodograms that overlap by more tell it little.
-  until_next_ =
-      std::clamp(static_cast<int>(newest_.size()) / (guesses_ ? 2 : 4), kFirstSteps, settings_.every);
-  if (std::ssize(newest_) >= kShortest) periodogram();
+  until_next_ = guess_alone ? std::max(n / kGuesses, 1) : std::min(n / (guesses_ ? 2 : 4), settings_.every);
   return true;
 }
 
@@ -118,25 +121,20 @@ const SeaModel& SeaIdentifier::identify(double swell) {
     // What is too slow to be resolved yet is as guessed; in a sea that came up and has not grown its longest
     // waves yet, in proportion to the rest.
     const auto slow = static_cast<Eigen::Index>(lowest_hz_ / df) + 1, fast = sea.size() - slow;
-    const double resolved_m2s = sea.tail(fast).sum();
-    const auto size = [&](const Eigen::VectorXd& shape) {
-      const double sum = shape.tail(fast).sum();
-      return sum > 0 ? resolved_m2s / sum : 0;
-    };
     if (came_up_)
-      sea.head(slow) = kYoung * size(unknown_) * unknown_.head(slow);
+      sea.head(slow) = kYoung * sea.tail(fast).sum() / unknown_.tail(fast).sum() * unknown_.head(slow);
     else
       sea.head(slow) = guess.head(slow);
     if (guesses_) {
       const double guessed = (came_up_ ? kCameUp : 1) * settings_.guess_weight *
                              std::exp(-square(divergence(sea.tail(fast), guess.tail(fast)) / kUnlike));
-      sea.tail(fast) += guessed / (guessed + weight_) * (size(guess) * guess.tail(fast) - sea.tail(fast));
+      sea.tail(fast) += guessed / (guessed + weight_) * (guess.tail(fast) - sea.tail(fast));
     }
   }
   const double interval_s =
       settings_.interval_s > 0 ? settings_.interval_s : suited_interval_s(sea, df, model_.interval_s);
-  // A short record has not shown yet what there is not.
-  const double ridge = std::max(kFirstRidge / (1 + weight_ / kShortRecord), kRidge);
+  // Few periodograms have not shown yet what there is not.
+  const double ridge = weight_ > 0 ? std::max(kFirstRidge / (1 + weight_ / kShortRecord), kRidge) : kRidge;
   model_ = model_of_density(sea, df, interval_s, settings_.order, ridge);
   if (model_.heave_variance_m2() < kLeastSea * kUnknownSea_m2) {  // calm: whatever comes, comes from anywhere
     model_ = unknown_sea(model_.interval_s, settings_.order, split.noise_m2ps3);

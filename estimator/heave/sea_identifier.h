@@ -19,6 +19,7 @@ struct SeaIdentifierSettings {
   double memory_s = 300;                // of the density; 0: never forgets
   double guess_weight = 0.01;           // of the guess beside periodograms, in whole blocks
   double accel_noise_m2ps3 = 6e-6;      // two-sided density assumed until it is seen; data sheet
+  double offset_sigma_mps2 = 0.02;      // standard uncertainty of the mean vertical acceleration
 };
 
 class SeaIdentifier {
@@ -34,8 +35,9 @@ class SeaIdentifier {
   void gap();                       // the next increment does not follow on the last
   void forget();                    // the sea is another one from about now on; out of a calm it is guessed
   int age() const { return age_; }  // nodes since the start, or since it forgot
-  const SeaModel& model() const { return model_; }  // as last identified
-  bool calm() const;                                // no sea to speak of, as last identified
+  const SeaModel& model() const { return model_; }   // as last identified
+  bool has_spectrum() const { return weight_ > 0; }  // not the guess alone
+  bool calm() const;                                 // no sea to speak of, as last identified
 
  private:
   void periodogram();
