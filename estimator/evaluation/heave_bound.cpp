@@ -71,6 +71,13 @@ double on_nodes(const HeaveBoundSettings& settings, double f_hz) {
   return sum / settings.interval_s;
 }
 
+// Two-sided, m^2/s^3.
+double bias_density(const HeaveBoundSettings& settings, double w_radps) {
+  const double corner = w_radps * settings.instability_time_s;
+  return 2 * settings.instability_sigma_mps2 * settings.instability_sigma_mps2 * settings.instability_time_s /
+         (1 + corner * corner);
+}
+
 }  // namespace
 
 HeaveBound::HeaveBound(const HeaveBoundSettings& settings) : interval_s_(settings.interval_s) {
@@ -83,7 +90,10 @@ HeaveBound::HeaveBound(const HeaveBoundSettings& settings) : interval_s_(setting
   for (std::size_t k = 0; k < phi_yy.size(); ++k) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(k) / kNodes;  // w dt
     const double sea = on_nodes(settings, static_cast<double>(k) / (kNodes * dt));
-    const double drift = q * dt * dt * dt * (2 + std::cos(angle)) / 3;
+    const double drift =
+        q * dt * dt * dt * (2 + std::cos(angle)) / 3 +
+        bias_density(settings, angle / dt) *
+            (angle > 0 ? std::pow(2 * std::sin(angle / 2) * dt / angle, 4) : std::pow(dt, 4)) / dt;
     const std::complex<double> once = 1.0 - std::polar(1.0, -angle);
     phi_yy[k] = std::norm(once * once) * sea + drift;
     phi_zy[k] = std::conj(once * once) * sea;

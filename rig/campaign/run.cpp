@@ -18,7 +18,8 @@
 
 namespace waverig::rig {
 
-SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan) {
+SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const CampaignUnit& unit,
+                                  const RunPlan& plan) {
   SimulatedRigSettings rig{.drive = campaign.drive, .arm = campaign.arm, .unit = unit.settings};
   rig.drive.counts_per_turn = campaign.axis.counts_per_turn;
   rig.drive.seed = plan.seed;
@@ -33,7 +34,9 @@ motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPl
   return motion::RotationProfile(campaign.sweep.profile_of(plan.setting));
 }
 
-OrderedRun ordered_run(const RunPlan& plan) { return {plan.setting.period_s, plan.setting.height_m, plan.repeat}; }
+OrderedRun ordered_run(const RunPlan& plan) {
+  return {plan.setting.period_s, plan.setting.height_m, plan.repeat};
+}
 
 Acquisition acquisition_of(const CampaignUnit& unit) {
   Acquisition acquisition(unit.sensitivities);
@@ -45,7 +48,8 @@ Acquisition acquisition_of(const CampaignUnit& unit) {
 
 namespace {
 
-SimulatedSeaSettings sea_settings(const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan) {
+SimulatedSeaSettings sea_settings(const CampaignSettings& campaign, const CampaignUnit& unit,
+                                  const RunPlan& plan) {
   SimulatedSeaSettings sea{.sea = campaign.sweep.sea, .buoy = campaign.sweep.buoy, .unit = unit.settings};
   sea.sea.tp_s = plan.setting.period_s;
   sea.sea.hm0_m = plan.setting.height_m;
@@ -91,7 +95,7 @@ evaluation::JudgeSettings judge_settings(const CampaignSettings& campaign, const
   evaluation::JudgeSettings settings = judge_settings(unit);
   if (campaign.sweep.mover != Mover::kSea) return settings;
   const evaluation::HeaveBound bound =
-      sea_bound(sea_settings(campaign, unit, plan).sea, settings.noise_density_mps2_rthz);
+      sea_bound(sea_settings(campaign, unit, plan).sea, unit.settings.accelerometer);
   for (const std::string& method : campaign.methods)
     settings.heave_bound_m[method] =
         bound.record_m(heave_lag_s(method, unit.methods.fixed_lag_s), plan.duration_s);

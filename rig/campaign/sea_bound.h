@@ -5,12 +5,12 @@
 
 #include "estimator/evaluation/heave_bound.h"
 #include "motion/sea_state.h"
+#include "rig/sensors/accelerometer.h"
 
 namespace waverig::rig {
 
 // Of the sea as draw_components draws it: nothing below lowest_relative, nothing above highest_relative.
-// noise_density_mps2_rthz: of the accelerometer, one-sided.
-evaluation::HeaveBound sea_bound(const motion::SeaSettings& sea, double noise_density_mps2_rthz);
+evaluation::HeaveBound sea_bound(const motion::SeaSettings& sea, const AccelerometerSettings& accelerometer);
 
 // How far behind its newest sample a method tells heave: fixed_lag_s where it runs in real time, else the
 // whole record, which limits every method.

@@ -168,7 +168,7 @@ BenchRecord bench_record(const BenchCase& settings, const rig::CampaignUnit& uni
 
 std::optional<evaluation::HeaveBound> bound_of(const BenchCase& settings, const rig::CampaignUnit& unit) {
   if (settings.motion == BenchMotion::kRegular) return std::nullopt;  // a line is no spectrum
-  return rig::sea_bound(sea_of(settings, 0), unit.settings.accelerometer.noise_density_mps2);
+  return rig::sea_bound(sea_of(settings, 0), unit.settings.accelerometer);
 }
 
 BenchLimits limits(const BenchCase& settings, const BenchMethod& method,

@@ -18,7 +18,7 @@ TEST(SeaBound, IsOfTheSeaAsItIsDrawn) {
   for (const double tp_s : {3.0, 8.0, 12.0}) {
     const motion::SeaSettings sea{.hm0_m = 0.6, .tp_s = tp_s, .exact_hm0 = false};
     const double drawn_m = std::sqrt(motion::moments_of(motion::draw_components(sea)).m0),
-                 std_m = sea_bound(sea, kNoise).heave_std_m();
+                 std_m = sea_bound(sea, {.noise_density_mps2 = kNoise}).heave_std_m();
     EXPECT_NEAR(std_m / drawn_m, 1, 1e-3) << tp_s;
     EXPECT_LT(std_m, sea.hm0_m / 4) << tp_s;
   }

@@ -83,6 +83,18 @@ TEST(HeaveBound, EqualsTheClosedFormOfWhiteHeaveOverDrift) {
   }
 }
 
+// The same of a bias that walks, the integral three times over of white noise of density 2 sb^2 / tb: by the
+// entropy integral R int ln(1 + (w0 / w)^6) dw / 2 pi the causal error is 2 R w0, w0 = (2 sb^2 / (tb R))^(1/6).
+TEST(HeaveBound, EqualsTheClosedFormOfWhiteHeaveOverAWalkingBias) {
+  const double R = 0.3, w0 = 0.02, time_s = 1e4;
+  const HeaveBound bound({.density_m2_per_hz = [=](double f) { return on_band(f, 2 * R); },
+                          .noise_density_mps2_rthz = 1e-7,
+                          .interval_s = kInterval_s,
+                          .instability_sigma_mps2 = std::sqrt(R * std::pow(w0, 6) * time_s / 2),
+                          .instability_time_s = time_s});
+  EXPECT_NEAR(std::pow(bound.steady_m(0), 2) / (2 * R * w0), 1, 0.01);
+}
+
 // With hardly any noise, path and speed of the begin are the straight line through n nodes of white heave,
 // whose newest point has the variance 2 (2 n - 1) / (n (n + 1)) of theirs.
 TEST(HeaveBound, BeginsAsAStraightLineThroughWhiteHeave) {
@@ -102,6 +114,15 @@ TEST(HeaveBound, IsTheNoiseIntegratedTwiceOverTheBandOfTheSea) {
   const HeaveBound bound({[=](double f) { return f > f1 && f < f2 ? 1.0 : 0.0; }, kNoise, kInterval_s});
   const double integral =
       kNoise * kNoise / (16 * std::pow(kPi, 4)) / 3 * (std::pow(f1, -3) - std::pow(f2, -3));
+  EXPECT_NEAR(bound.steady_m(kWholeRecord_s) / std::sqrt(integral), 1, 0.003);
+}
+
+// Above its corner the bias has the one-sided density sb^2 / (pi^2 f^2 tb).
+TEST(HeaveBound, IsTheWanderingBiasIntegratedTwiceOverTheBandOfTheSea) {
+  const double f1 = 0.08, f2 = 0.4, sigma_mps2 = 0.01, time_s = 1000;
+  const HeaveBound bound({[=](double f) { return f > f1 && f < f2 ? 1.0 : 0.0; }, 1e-6, kInterval_s, sigma_mps2, time_s});
+  const double integral = sigma_mps2 * sigma_mps2 / time_s / (16 * std::pow(kPi, 6)) / 5 *
+                          (std::pow(f1, -5) - std::pow(f2, -5));
   EXPECT_NEAR(bound.steady_m(kWholeRecord_s) / std::sqrt(integral), 1, 0.003);
 }
 
