@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace waverig::estimator {
 namespace {
@@ -45,19 +44,21 @@ SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double i
                           double ridge) {
   SeaModel model;
   model.interval_s = interval_s;
-  model.autocovariance_m2.setZero(order + 1);
-  double m2 = 0;
-  for (Eigen::Index i = 1; i < density.size(); ++i) {
-    const double weight = 2 * df_hz * density[i], w = 2 * std::numbers::pi * df_hz * static_cast<double>(i);
-    if (weight == 0) continue;
-    const double cos1 = std::cos(w * interval_s);
-    double before = cos1, now = 1;  // cos((j - 1) x), cos(j x), by Chebyshev's recurrence
-    for (int j = 0; j <= order; ++j) {
-      model.autocovariance_m2[j] += weight * now;
-      before = std::exchange(now, 2 * cos1 * now - before);
-    }
-    m2 += weight * w * w;
+  model.autocovariance_m2.resize(order + 1);
+  const Eigen::Index bins = density.size();
+  const Eigen::ArrayXd w =
+      Eigen::ArrayXd::LinSpaced(bins, 0, 2 * std::numbers::pi * df_hz * static_cast<double>(bins - 1));
+  const Eigen::ArrayXd cos1 = (w * interval_s).cos();
+  Eigen::ArrayXd weight = 2 * df_hz * density.array();
+  weight[0] = 0;
+  // cos((j - 1) w dt) and cos(j w dt), by Chebyshev's recurrence.
+  Eigen::ArrayXd before = cos1, now = Eigen::ArrayXd::Ones(bins);
+  for (int j = 0; j <= order; ++j) {
+    model.autocovariance_m2[j] = (weight * now).sum();
+    before = 2 * cos1 * now - before;
+    before.swap(now);
   }
+  const double m2 = (weight * w.square()).sum();
   model.mean_frequency_radps =
       model.autocovariance_m2[0] > 0 ? std::sqrt(m2 / model.autocovariance_m2[0]) : 0.0;
   model.autocovariance_m2[0] *= 1 + ridge;
