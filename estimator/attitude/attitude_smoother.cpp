@@ -104,10 +104,12 @@ void correct_samples(const std::vector<ImuSample>& imu, const std::vector<Attitu
 }  // namespace
 
 std::vector<AttitudeSample> smooth_attitude(const std::vector<ImuSample>& imu,
-                                            const AttitudeSettings& settings, AttitudeFilter* live) {
+                                            const AttitudeSettings& settings, AttitudeFilter* live,
+                                            const AttitudeSample* start) {
   if (imu.empty()) return {};
-  AttitudeFilter filter(settings);
-  for (int pass = 0;; ++pass) {
+  AttitudeFilter filter =
+      start ? AttitudeFilter(settings, start->q_NB, start->gyro_bias_B) : AttitudeFilter(settings);
+  for (int pass = start ? 1 : 0;; ++pass) {
     Forward forward = run(filter, imu);
     if (live) *live = filter;
     if (forward.nodes.empty()) return forward.samples;  // shorter than one correction

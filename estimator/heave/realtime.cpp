@@ -171,7 +171,8 @@ HeaveFilter Realtime::most_probable(const std::vector<Step>& steps) {
 // newest.
 AttitudeSample Realtime::rethink() {
   const std::vector<AttitudeSample> attitude =
-      smooth_attitude(first_, attitude_settings(settings_.sensor), &attitude_);
+      smooth_attitude(first_, attitude_settings(settings_.sensor), &attitude_, start_ ? &*start_ : nullptr);
+  start_ = attitude.front();
   samples_ = nodes_ = 0;
   motion_ = {};
   identifier_.restart();

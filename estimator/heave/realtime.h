@@ -9,6 +9,7 @@
 // it.
 #pragma once
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "estimator/attitude/attitude_filter.h"
@@ -56,9 +57,10 @@ class Realtime : public Method {
   HeaveFilter filter_;
   WaveCounter counter_;
 
-  std::vector<ImuSample> first_;     // from the start on, for as long as they are gone through again
-  std::vector<Step> steps_;          // of the sample just added; a member for its memory
-  std::deque<PathIncrement> whole_;  // the newest node intervals, newest last
+  std::vector<ImuSample> first_;         // from the start on, for as long as they are gone through again
+  std::optional<AttitudeSample> start_;  // attitude of the first of them, as last found
+  std::vector<Step> steps_;              // of the sample just added; a member for its memory
+  std::deque<PathIncrement> whole_;      // the newest node intervals, newest last
   std::deque<Held> held_;
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
