@@ -67,12 +67,11 @@ std::string sea_results_table(const CampaignResults& results) {
   if (directions) heads.emplace_back("From \u00B0");
   HtmlTable table(
       "The steady parts of all repeats; Tp and Hm0 as set. Heave error: root mean square against the true "
-      "heave, "
-      "also in percent of the true Hm0, and beside it the least that any method can have that tells heave "
-      "when this one does, knows the spectrum and has no disturbance but the accelerometer's noise (Wiener). "
-      "Hm0 and Tm02: measured against those of the true heave. A number "
-      "leads to "
-      "the runs behind it.",
+      "heave, also in percent of the true Hm0, and beside it the least that any method can have that tells "
+      "heave when this one does, knows the spectrum and is disturbed by nothing but the accelerometer's "
+      "noise "
+      "and the wandering of its bias (Wiener). Hm0 and Tm02: measured against those of the true heave. A "
+      "number leads to the runs behind it.",
       heads);
   for (const CellResult& cell : results.cells) {
     const std::string link = fmt::format("#{}", cell_id(cell));
