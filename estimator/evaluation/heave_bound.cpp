@@ -90,10 +90,10 @@ HeaveBound::HeaveBound(const HeaveBoundSettings& settings) : interval_s_(setting
   for (std::size_t k = 0; k < phi_yy.size(); ++k) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(k) / kNodes;  // w dt
     const double sea = on_nodes(settings, static_cast<double>(k) / (kNodes * dt));
+    const double mean = angle > 0 ? 2 * std::sin(angle / 2) / angle : 1;  // of a slow wave over an interval
     const double drift =
-        q * dt * dt * dt * (2 + std::cos(angle)) / 3 +
-        bias_density(settings, angle / dt) *
-            (angle > 0 ? std::pow(2 * std::sin(angle / 2) * dt / angle, 4) : std::pow(dt, 4)) / dt;
+        dt * dt * dt *
+        (q * (2 + std::cos(angle)) / 3 + std::pow(mean, 4) * bias_density(settings, angle / dt));
     const std::complex<double> once = 1.0 - std::polar(1.0, -angle);
     phi_yy[k] = std::norm(once * once) * sea + drift;
     phi_zy[k] = std::conj(once * once) * sea;

@@ -34,6 +34,10 @@ AttitudeSettings attitude_settings(const SensorKnowledge& sensor) {
   return s;
 }
 
+double accel_noise_m2ps3(const SensorKnowledge& sensor) {
+  return square(attitude_settings(sensor).accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
+}
+
 double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, double gravity_mps2) {
   // A settled attitude errs slowly: what it lets in lies at the waves' own frequencies and makes no drift.
   const double tilt2 = std::max(square(attitude.tilt_sigma_rad) - square(kSteadyTilt_rad), 0.0);

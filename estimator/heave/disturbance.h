@@ -7,6 +7,7 @@
 namespace waverig::estimator {
 
 AttitudeSettings attitude_settings(const SensorKnowledge& sensor);
+double accel_noise_m2ps3(const SensorKnowledge& sensor);  // two-sided density, data sheet
 
 // How the body moves and what its sensor is worth, followed sample by sample.
 struct Motion {

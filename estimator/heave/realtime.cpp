@@ -27,13 +27,10 @@ constexpr double kOffsetDoubt = 2;                 // a sensor that is off is no
 constexpr std::size_t kMostRethought = 60'000;     // samples
 constexpr double kAtOnce = 1.1;
 
-double square(double x) { return x * x; }
-
 SeaIdentifierSettings identifier_settings(const SensorKnowledge& sensor) {
   SeaIdentifierSettings s;
   s.guess_weight = kGuessWeight;
-  s.accel_noise_m2ps3 =
-      square(attitude_settings(sensor).accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
+  s.accel_noise_m2ps3 = accel_noise_m2ps3(sensor);
   s.offset_sigma_mps2 = kOffsetDoubt * offset_sigma_mps2(sensor);
   return s;
 }

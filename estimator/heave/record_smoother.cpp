@@ -59,8 +59,7 @@ SeaModel identify(std::span<const Piece> pieces, const SensorKnowledge& sensor) 
   settings.interval_s = 0;  // as suits the sea
   settings.block = kBlock;
   settings.memory_s = 0;
-  settings.accel_noise_m2ps3 =
-      square(attitude_settings(sensor).accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
+  settings.accel_noise_m2ps3 = accel_noise_m2ps3(sensor);
   settings.offset_sigma_mps2 = offset_sigma_mps2(sensor);
   SeaIdentifier identifier(settings);
   for (const Piece& piece : pieces) {

@@ -19,12 +19,6 @@ constexpr double kRidge = 1e-6;       // of the variance, white
 constexpr double kPriorValues = 1;    // as many values say that the size is the candidate's
 constexpr double kNegligible = 1e-8;  // likelihood, beside the best one's
 
-// S(f) ~ f^-5 exp(-5/4 (fp/f)^4), whose integral is 1 / (5 fp^4). Two-sided.
-double pierson_moskowitz(double variance_m2, double peak_hz, double f_hz) {
-  const double x4 = std::pow(peak_hz / f_hz, 4);
-  return variance_m2 / 2 * 5 * x4 / f_hz * std::exp(-1.25 * x4);
-}
-
 }  // namespace
 
 SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3, double offset_sigma_mps2)
@@ -36,24 +30,26 @@ SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3, dou
   const double offset_m = offset_sigma_mps2 * dt_s * dt_s;
   Eigen::MatrixXd lags(kOrder + 1, bins);
   for (int j = 0; j <= kOrder; ++j) lags.row(j) = (j * w.array()).cos();
+  const Eigen::VectorXd noise_r_m2 = lags * noise;
   std::vector<Predictors> predictors;
-  for (int p = 0; p < kPeriods; ++p)
-    for (const double height : kHeights)
-      for (const double end : kTailEnds) {
-        const double tp_s = kShortest_s * std::pow(kRatio, p), hm0_m = height * kSteepness_s2m * tp_s * tp_s;
-        Candidate c{.density_m2s = Eigen::VectorXd::Zero(bins), .prior = std::pow(height, 3)};
-        for (Eigen::Index i = 1; i < bins; ++i) {
-          const double f = df_hz * static_cast<double>(i);
-          if (f * tp_s < end) c.density_m2s[i] = pierson_moskowitz(hm0_m * hm0_m / 16, 1 / tp_s, f);
-        }
-        const Eigen::VectorXd seen = turned.cwiseAbs2().cwiseProduct(c.density_m2s) + noise;
-        c.variance_m2 = 2 * df_hz * seen.tail(bins - 1).sum();
-        Eigen::VectorXd r = 2 * df_hz * (lags * seen);
+  for (int p = 0; p < kPeriods; ++p) {
+    const double tp_s = kShortest_s * std::pow(kRatio, p), hm0_m = kSteepness_s2m * tp_s * tp_s;
+    const Eigen::VectorXd usual = pierson_moskowitz_m2s(hm0_m * hm0_m / 16, tp_s, bins, df_hz);
+    for (const double end : kTailEnds) {
+      Eigen::VectorXd sea = usual;
+      sea.tail(std::max(bins - static_cast<Eigen::Index>(std::ceil(end / (tp_s * df_hz))), Eigen::Index{0}))
+          .setZero();
+      const Eigen::VectorXd sea_r_m2 = lags * turned.cwiseAbs2().cwiseProduct(sea);
+      for (const double height : kHeights) {
+        Eigen::VectorXd r = 2 * df_hz * (height * height * sea_r_m2 + noise_r_m2);
+        candidates_.push_back(
+            {.density_m2s = height * height * sea, .prior = std::pow(height, 3), .variance_m2 = r[0]});
         r[0] *= 1 + kRidge;
         r.array() += offset_m * offset_m;
         predictors.push_back(levinson(r));
-        candidates_.push_back(std::move(c));
       }
+    }
+  }
   const auto count = std::ssize(candidates_);
   for (int m = 0; m <= kOrder; ++m) {
     const auto order = static_cast<std::size_t>(m);

@@ -5,8 +5,8 @@
 // end at three to nine times the peak (a float, a tank), the likelihood of what is seen at the nodes is
 // followed: each candidate predicts the next value from the last ones (Levinson), its size being the one that
 // makes its own errors as large as they are, the sensor's offset as unknown as it is. The guess is the
-// candidates' mean, each weighed with its likelihood over its own variance: an error counts by how large it is
-// beside the sea, so that a sea not yet told from a larger one is not taken for it.
+// candidates' mean, each weighed with its likelihood over its own variance: an error counts by how large it
+// is beside the sea, so that a sea not yet told from a larger one is not taken for it.
 #pragma once
 #include <Eigen/Core>
 #include <vector>

@@ -48,9 +48,7 @@ SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
       density_(Eigen::VectorXd::Zero(settings.block / 2 + 1)),
       model_(unknown_sea(settings.interval_s > 0 ? settings.interval_s : 2 * kFineInterval_s, settings.order,
                          settings.accel_noise_m2ps3)) {
-  unknown_.setZero(density_.size());
-  for (Eigen::Index i = 1; i < unknown_.size(); ++i)
-    unknown_[i] = unknown_sea_density_m2s(static_cast<double>(i) / (kDt * settings.block));
+  unknown_ = unknown_sea_density_m2s(density_.size(), 1 / (kDt * settings.block));
   newest_.reserve(static_cast<std::size_t>(2 * settings.block));
 }
 
@@ -88,11 +86,12 @@ bool SeaIdentifier::add(const PathIncrement& increment) {
   last_ = increment;
   has_last_ = true;
   ++age_;
-  if (--until_next_ > 0 || std::ssize(newest_) < (guesses_ ? kFirstGuess : kShortest)) return false;
+  const bool guessing = guesses_ && !has_spectrum();
+  if (--until_next_ > 0 || std::ssize(newest_) < (guessing ? kFirstGuess : kShortest)) return false;
   const auto block = static_cast<std::ptrdiff_t>(settings_.block);
   if (std::ssize(newest_) > block) newest_.erase(newest_.begin(), newest_.end() - block);
   const auto n = static_cast<int>(newest_.size());
-  const bool guess_alone = guesses_ && n < (came_up_ ? kShortest : kGuessed);
+  const bool guess_alone = guessing && n < (came_up_ ? kShortest : kGuessed);
   if (!guess_alone) periodogram();
   // Where there is a guess, periodograms that overlap by more tell it little.
   until_next_ = guess_alone ? std::max(n / kGuesses, 1) : std::min(n / (guesses_ ? 2 : 4), settings_.every);

@@ -11,7 +11,7 @@ constexpr double kBiasCorner_radps = 0.035;  // below it the bias walk outweighs
                                              // the data sheet's, whose 0.1 mg in 100 s need 0.05
 constexpr double kFast_hz = 0.5;             // half of what nodes half a second apart can tell
 constexpr double kFastShare = 0.02;          // of the sea's variance above it: needs the fine nodes
-constexpr double kUnknownPeak_hz = 1.0 / 14;
+constexpr double kUnknownPeak_s = 14;
 constexpr double kUnknownRidge = 1e-5;
 
 }  // namespace
@@ -69,17 +69,23 @@ SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double i
 }
 
 // S(f) ~ f^-5 exp(-5/4 (fp/f)^4), whose integral is 1 / (5 fp^4).
-double unknown_sea_density_m2s(double f_hz) {
-  const double x4 = std::pow(kUnknownPeak_hz / f_hz, 4);
-  return kUnknownSea_m2 / 2 * 5 * x4 / f_hz * std::exp(-1.25 * x4);
+Eigen::VectorXd pierson_moskowitz_m2s(double variance_m2, double tp_s, Eigen::Index bins, double df_hz) {
+  const Eigen::ArrayXd f_hz = Eigen::ArrayXd::LinSpaced(bins, 0, df_hz * static_cast<double>(bins - 1));
+  const Eigen::ArrayXd x4 = (tp_s * f_hz).square().square().inverse();
+  Eigen::VectorXd density_m2s = variance_m2 / 2 * 5 * x4 / f_hz * (-1.25 * x4).exp();
+  density_m2s[0] = 0;
+  return density_m2s;
+}
+
+Eigen::VectorXd unknown_sea_density_m2s(Eigen::Index bins, double df_hz) {
+  return pierson_moskowitz_m2s(kUnknownSea_m2, kUnknownPeak_s, bins, df_hz);
 }
 
 SeaModel unknown_sea(double interval_s, int order, double accel_noise_m2ps3) {
   constexpr int kBins = 512;
   const double df = 0.5 / kFineInterval_s / kBins;
-  Eigen::VectorXd density = Eigen::VectorXd::Zero(kBins + 1);
-  for (int i = 1; i <= kBins; ++i) density[i] = unknown_sea_density_m2s(df * i);
-  SeaModel model = model_of_density(density, df, interval_s, order, kUnknownRidge);
+  SeaModel model =
+      model_of_density(unknown_sea_density_m2s(kBins + 1, df), df, interval_s, order, kUnknownRidge);
   model.set_noise(accel_noise_m2ps3);
   return model;
 }

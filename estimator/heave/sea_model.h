@@ -43,9 +43,12 @@ SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double i
 // reaches over some three periods. present_s: of the model that stands, which is kept in doubt.
 double suited_interval_s(const Eigen::VectorXd& density, double df_hz, double present_s);
 
-// Before anything is known: a fully grown sea (Pierson-Moskowitz) with waves of up to 14 s, and of Hs 2 m.
+// A fully grown sea (Pierson, Moskowitz 1964): density of heave, two-sided, at i * df_hz for i < bins.
+Eigen::VectorXd pierson_moskowitz_m2s(double variance_m2, double tp_s, Eigen::Index bins, double df_hz);
+
+// Before anything is known: such a sea, with waves of up to 14 s, and of Hs 2 m.
 inline constexpr double kUnknownSea_m2 = 0.25;  // its variance
-double unknown_sea_density_m2s(double f_hz);    // two-sided
+Eigen::VectorXd unknown_sea_density_m2s(Eigen::Index bins, double df_hz);
 SeaModel unknown_sea(double interval_s, int order, double accel_noise_m2ps3);
 
 }  // namespace waverig::estimator

@@ -89,8 +89,8 @@ TEST(Realtime, HasUnitGainAndNoLagAtTheWaveFrequencies) {
   }
 }
 
-// Even with spectrum and attitude known, the first waves are not: 1.3 to 1.8 % of Hm0 are left over twenty minutes, and
-// 3.3 % at 12 s and 1 m (evaluation/heave_bound.h).
+// Even with spectrum and attitude known, the first waves are not: 1.2 to 1.7 % of Hm0 are left over twenty minutes, and
+// 3.0 % at 12 s and 1 m (evaluation/heave_bound.h, white noise).
 TEST(Realtime, StaysWithinTheStatedErrorOverAWholeRecordThatBeginsInMidSea) {
   for (const Limit& limit : {Limit{3, 0.5, 0.025}, {6, 1, 0.025}, {8, 1.5, 0.025}, {9, 2, 0.025}, {12, 1, 0.04}}) {
     double squares = 0;
@@ -219,12 +219,15 @@ TEST(Realtime, KnowsTheSeaWithinSecondsWhereverItsSpectrumEnds) {
   }
 }
 
-// From the first wave on heave is told not much worse than by someone who knows spectrum and tilt: limit.rms is the ratio.
+// From the first wave on heave is told not much worse than by someone who knows spectrum and tilt.
 TEST(Realtime, TellsHeaveFromTheFirstWaveOn) {
   constexpr int kSeas = 24;
   constexpr double kFrom_s = 2, kTo_s = 20;
-  for (const Limit& limit : {Limit{6, 1, 1.7}, {8, 1.5, 1.6}, {12, 1, 1.55}}) {
-    const motion::SeaSettings sea = sea_settings(limit.tp_s, limit.hm0_m, 0);
+  struct Worse {
+    double tp_s, hm0_m, times;
+  };
+  for (const Worse& worse : {Worse{6, 1, 1.7}, {8, 1.5, 1.6}, {12, 1, 1.55}}) {
+    const motion::SeaSettings sea = sea_settings(worse.tp_s, worse.hm0_m, 0);
     const motion::WaveSpectrum spectrum(sea.shape, sea.hm0_m, sea.tp_s, sea.gamma);
     const evaluation::HeaveBound bound(
         {.density_m2_per_hz =
@@ -235,12 +238,12 @@ TEST(Realtime, TellsHeaveFromTheFirstWaveOn) {
          .noise_density_mps2_rthz = SensorErrors{}.accel_noise_mps2_rthz});
     double squares_m2 = 0, n = 0;
     for (std::uint64_t seed = 1; seed <= kSeas; ++seed) {
-      const SeaRecord record = sea_record({.tp_s = limit.tp_s, .hm0_m = limit.hm0_m, .duration_s = kTo_s}, seed);
+      const SeaRecord record = sea_record({.tp_s = worse.tp_s, .hm0_m = worse.hm0_m, .duration_s = kTo_s}, seed);
       const Collector out = run_realtime(record.samples);
       for (std::size_t i = std::lround(100 * kFrom_s); i < out.heaves.size(); ++i, ++n)
         squares_m2 += square(out.heaves[i].heave_m - record.heave_m[i]);
     }
-    EXPECT_LT(std::sqrt(squares_m2 / n), limit.rms * bound.record_m(0, kTo_s, kFrom_s)) << "Tp " << limit.tp_s << " s";
+    EXPECT_LT(std::sqrt(squares_m2 / n), worse.times * bound.record_m(0, kTo_s, kFrom_s)) << "Tp " << worse.tp_s << " s";
   }
 }
 
