@@ -37,12 +37,17 @@ HeaveFilter::HeaveFilter(const SeaModel& model, double offset_sigma_mps2) {
 
 void HeaveFilter::set_model(const SeaModel& model) {
   if (model.interval_s != model_.interval_s || model.order() != model_.order()) {
-    begin(model, P_.bottomRightCorner<3, 3>());
+    begin(model, P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>());
   } else {
     model_ = model;
   }
   surprise_ = roughness_ = 1;
   usual_variance_m2_ = kNoVariance;
+}
+
+void HeaveFilter::begin_sea(const SeaModel& model) {
+  set_model(model);
+  restlessness_ = kNewSea;
 }
 
 // No heave is known at these nodes yet: its prior is the sea's own.
@@ -51,9 +56,7 @@ void HeaveFilter::begin(const SeaModel& model, const Eigen::Matrix3d& drift) {
   const int n = model.order();
   z_.setZero(n);
   P_.setZero(n + 3, n + 3);
-  next_P_ = P_;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) P_(i, j) = model.autocovariance_m2[std::abs(i - j)];
+  for (int j = 0; j < n; ++j) P_.col(j).segment(j, n - j) = model.autocovariance_m2.head(n - j);
   P_.bottomRightCorner<3, 3>() = drift;
 }
 
@@ -69,7 +72,7 @@ void HeaveFilter::skip(int intervals) {
   const int n = model_.order();
   for (int i = 0; i < intervals; ++i) predict(model_.accel_noise_m2ps3);
   P_.middleRows(n, 2).setZero();
-  P_.middleCols(n, 2).setZero();
+  P_.row(n + 2).segment(n, 2).setZero();
   P_(n, n) = kPathVariance_m2;
   P_(n + 1, n + 1) = kSpeedVariance_m2ps2;
   path_m_ = z_[0];
@@ -85,29 +88,32 @@ void HeaveFilter::predict(double noise_m2ps3) {
 
   const double dt = model_.interval_s;
   const Eigen::Matrix3d F = drift_transition(dt);
-  const Eigen::VectorXd Pa = P_.topLeftCorner(n, n) * a;
-  next_P_(0, 0) = a.dot(Pa) + surprise_ * model_.innovation_m2;
-  next_P_.row(0).segment(1, n - 1) = Pa.head(n - 1).transpose();
-  next_P_.col(0).segment(1, n - 1) = Pa.head(n - 1);
-  next_P_.block(1, 1, n - 1, n - 1) = P_.topLeftCorner(n - 1, n - 1);
-  next_P_.block<1, 3>(0, n).noalias() = (a.transpose() * P_.block(0, n, n, 3)) * F.transpose();
-  next_P_.block(1, n, n - 1, 3).noalias() = P_.block(0, n, n - 1, 3) * F.transpose();
-  next_P_.block(n, 0, 3, n) = next_P_.block(0, n, n, 3).transpose();
-  Eigen::Matrix3d D = F * P_.block<3, 3>(n, n) * F.transpose();
+  const auto heave = P_.topLeftCorner(n, n);
+  const Eigen::VectorXd Pa = heave.selfadjointView<Eigen::Lower>() * a;
+  const Eigen::Vector3d with_drift = F * (P_.block(n, 0, 3, n) * a);
+  for (int j = n - 1; j > 0; --j) {  // each heave is one node older
+    P_.col(j).segment(j, n - j) = P_.col(j - 1).segment(j - 1, n - j);
+    P_.col(j).tail<3>() = F * P_.col(j - 1).tail<3>();
+  }
+  P_(0, 0) = a.dot(Pa) + surprise_ * model_.innovation_m2;
+  P_.col(0).segment(1, n - 1) = Pa.head(n - 1);
+  P_.col(0).tail<3>() = with_drift;
+  Eigen::Matrix3d D = P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>();
+  D = F * D * F.transpose();
   // White acceleration noise over one interval, integrated once and twice.
   D(0, 0) += noise_m2ps3 * dt * dt * dt / 3;
-  D(0, 1) += noise_m2ps3 * dt * dt / 2;
   D(1, 0) += noise_m2ps3 * dt * dt / 2;
   D(1, 1) += noise_m2ps3 * dt;
   D(2, 2) += model_.bias_walk_m2ps5 * dt;
-  next_P_.block<3, 3>(n, n) = 0.5 * (D + D.transpose());
-  P_.swap(next_P_);
+  P_.bottomRightCorner<3, 3>().triangularView<Eigen::Lower>() = D;
 }
 
 void HeaveFilter::update() {
   const int n = model_.order();
   const double innovation = path_m_ - z_[0];
-  Eigen::VectorXd PH = P_.col(0) + P_.col(n);
+  Eigen::VectorXd PH = P_.col(0);
+  PH.head(n) += P_.row(n).head(n).transpose();
+  PH.tail<3>() += P_.col(n).tail<3>();
   double S = PH[0] + PH[n] + kMeasurementVariance_m2;
   // A sea that rises faster than the model is learned anew: believe the motion, and leave the drift as it is.
   const double ratio = innovation * innovation / S;
@@ -130,13 +136,12 @@ void HeaveFilter::update() {
   path_m_ -= innovation * gain[n];
   speed_mps_ -= innovation * gain[n + 1];
   bias_mps2_ += innovation * gain[n + 2];
-  P_.noalias() -= gain * PH.transpose();
+  P_.selfadjointView<Eigen::Lower>().rankUpdate(PH, -1 / S);
 }
 
 double HeaveFilter::variance_m2(double since_s) const {
-  const int n = model_.order();
   const Eigen::Vector3d h(1, since_s, since_s * since_s / 2);
-  return std::max(h.dot(P_.block<3, 3>(n, n) * h), 0.0);
+  return std::max(h.dot(P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>() * h), 0.0);
 }
 
 }  // namespace waverig::estimator

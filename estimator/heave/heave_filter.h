@@ -20,6 +20,7 @@ class HeaveFilter {
   HeaveFilter(const SeaModel& model, double offset_sigma_mps2);
   // Keeps the drift; where the nodes lie otherwise from now on, the older heaves are forgotten.
   void set_model(const SeaModel& model);
+  void begin_sea(const SeaModel& model);  // the same, of a sea that just came up
 
   // One node interval's increment. disturbance_m2ps3: two-sided density of the acceleration's noise where
   // that is known to be more than the model's, which is an average (attitude not settled, saturated samples;
@@ -54,13 +55,14 @@ class HeaveFilter {
   SeaModel model_;
   Eigen::VectorXd z_;  // heaves, newest first
   double path_m_ = 0, speed_mps_ = 0, bias_mps2_ = 0;
-  Eigen::MatrixXd P_, next_P_;
+  Eigen::MatrixXd P_;  // the lower triangle
   static constexpr double kTooRough = 5;
   static constexpr double kNoVariance = std::numeric_limits<double>::infinity();
   double log_likelihood_ = 0;
   double usual_variance_m2_ = kNoVariance;  // of the innovations, when nothing surprises
   double roughness_ = 1;                    // mean of the last innovations squared over that
-  double restlessness_ = 2;  // mean of half a minute's, capped; a sea is restless until it is found steady
+  static constexpr double kNewSea = 2;
+  double restlessness_ = kNewSea;  // mean of half a minute's, capped; restless until it is found steady
   double surprise_ = 1;  // how many times the model's innovation variance the sea is found to have just now
 };
 

@@ -79,7 +79,7 @@ std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments
   const auto nodes = static_cast<Eigen::Index>(increments.size()) + 1;
   const double dt = model.interval_s;
   const Path path = integrate(increments, dt);
-  const Predictors predictors = levinson(model.autocovariance_m2);
+  const Predictors<1> predictors = levinson(model.autocovariance_m2);
   const Eigen::Index order = model.order();
   BandedCholesky A(3 * nodes, std::max<Eigen::Index>(3 * std::min(order, nodes - 1), 5));
   Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * nodes);
@@ -89,7 +89,7 @@ std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments
   std::vector<double> row;
   for (Eigen::Index k = 0; k < nodes; ++k) {
     const Eigen::Index m = std::min(k, order);
-    const Eigen::VectorXd& a = predictors.coefficients[static_cast<std::size_t>(m)];
+    const Eigen::RowVectorXd& a = predictors.coefficients[static_cast<std::size_t>(m)];
     index.assign(1, 3 * k);
     row.assign(1, 1.0);
     double value = path.path_m[k];
@@ -98,7 +98,7 @@ std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments
       row.push_back(-a[j - 1]);
       value -= a[j - 1] * path.path_m[k - j];
     }
-    add_row(A, u, index, row, value, 1 / predictors.variance[static_cast<std::size_t>(m)]);
+    add_row(A, u, index, row, value, 1 / predictors.variance[static_cast<std::size_t>(m)].value());
   }
   // The drift's steps.
   const Eigen::Matrix<double, 3, 6> G = drift_step(dt);

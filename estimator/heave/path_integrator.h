@@ -1,9 +1,9 @@
 // PathIntegrator: vertical acceleration at any sample times, integrated twice between the nodes of an even
 // time grid.
 //
-// Everything slow about heave (drift, bias, the sea's spectrum) is decided at the nodes, half a second apart;
-// between them the path is the acceleration's own double integral, so that gain and lag at wave frequencies
-// are exact. A node interval is told by its two increments, free of any initial speed or position:
+// Everything slow about heave (drift, bias, the sea's spectrum) is decided at the nodes; between them the
+// path is the acceleration's own double integral, so that gain and lag at wave frequencies are exact. A node
+// interval is told by its two increments, free of any initial speed or position:
 //     speed_mps = int a dt,      path_m = int int a dt dt         (over one interval, from rest)
 #pragma once
 #include <cstdint>

@@ -21,11 +21,18 @@ constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
 constexpr double kRethought_s = 60;
 constexpr std::array kSwells = {5e-4, 0.03, 0.5};  // relative variances, of which one is believed
-constexpr double kChosenAgain = 1.5;               // times the nodes, while the sea is guessed
-constexpr double kGuessWeight = 3;                 // periodograms of less than a minute tell little
-constexpr double kOffsetDoubt = 2;                 // a sensor that is off is not to be taken for a swell
-constexpr std::size_t kMostRethought = 60'000;     // samples
+constexpr double kLargeSwell = 0.3;                // a swell is the less usual the larger, by this power
+constexpr int kRethoughtAgain = 12;                // when surprised, with a twelfth more seen
+constexpr std::ptrdiff_t kOnset = 4;               // nodes; a rise is seen so much later than it begins
+constexpr std::ptrdiff_t kRise = 120;              // nodes after it that are gone through again
+constexpr double kJumpFades_s = 4;
+constexpr double kChosenAgain = 1.5;            // times the nodes, while the sea is guessed
+constexpr double kGuessWeight = 3;              // periodograms of less than a minute tell little
+constexpr double kOffsetDoubt = 2;              // a sensor that is off is not to be taken for a swell
+constexpr std::size_t kMostRethought = 60'000;  // samples
 constexpr double kAtOnce = 1.1;
+
+double square(double x) { return x * x; }
 
 SeaIdentifierSettings identifier_settings(const SensorKnowledge& sensor) {
   SeaIdentifierSettings s;
@@ -76,9 +83,12 @@ void Realtime::add(const ImuSample& raw, Output& output) {
   if (std::exchange(due_, false)) {
     if (rethinks_)
       attitude = rethink();
+    else if (rise_)
+      rethink_rise();
     else
       filter_.set_model(identifier_.identify());
   }
+  jump_m_ *= std::exp(-verdict.dt_s / kJumpFades_s);
   // 3. Answer, now or after the lag.
   Held held;
   held.sample.utime = sample.utime;
@@ -110,6 +120,9 @@ void Realtime::resume(const ImuSample& sample, Output& output) {
   settled_nodes_ = 0;
   identifier_.gap();
   rethinks_ = false;
+  calm_.reset();
+  rise_.reset();
+  jump_m_ = 0;
 }
 
 // Appends the node intervals that end with the sample.
@@ -130,32 +143,53 @@ void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude, s
 }
 
 void Realtime::filter(const Step& step) {
+  remember(step);
   filter_.step(step.increment, step.disturbance_m2ps3);
   ++settled_nodes_;
   // What comes up in a calm is new, however short the calm was.
-  if (filter_.surprised() && (identifier_.age() > old_enough_ || (rethinks_ && identifier_.calm()))) {
+  if (!filter_.surprised()) return;
+  if (identifier_.age() > old_enough_ || (rethinks_ && identifier_.calm())) {
     // Surprised again at once: what was forgotten was too little to show a sea as slow as this.
     const bool at_once = identifier_.age() < kAtOnce * old_enough_;
     old_enough_ = at_once ? std::min(2 * old_enough_, kOldestEnough) : kOldEnough;
+    rise_ = identifier_.calm() ? std::move(calm_) : std::nullopt;
+    calm_.reset();
+    chosen_at_ = 0;
     identifier_.forget();
     rethinks_ = false;
+  } else if (rethinks_) {
+    due_ |= nodes_ > thought_at_ + thought_at_ / kRethoughtAgain;
   }
 }
 
-// The filter after these steps from the start, had their sea been known; of some swells that may lie under
-// it, the one which makes the path most probable.
-HeaveFilter Realtime::most_probable(const std::vector<Step>& steps) {
+void Realtime::remember(const Step& step) {
+  if (rise_) rise_->steps.push_back(step);
+  if (!identifier_.calm())
+    calm_.reset();
+  else if (!calm_ || std::ssize(calm_->steps) >= kOnset)
+    calm_ = Since{filter_, {}};
+  if (calm_) calm_->steps.push_back(step);
+}
+
+// The filter after these steps, from the record's start or out of a calm, had their sea been known; of some
+// swells that may lie under it, the one which makes the path most probable.
+HeaveFilter Realtime::most_probable(const HeaveFilter* calm, const std::vector<Step>& steps) {
   const double elapsed_s = static_cast<double>(nodes_) * kFineInterval_s;
+  const auto seen = std::ssize(steps);
   const bool choose = identifier_.has_spectrum() ||
-                      static_cast<double>(nodes_) >= kChosenAgain * static_cast<double>(chosen_at_);
-  if (choose) chosen_at_ = nodes_;
+                      static_cast<double>(seen) >= kChosenAgain * static_cast<double>(chosen_at_);
+  if (choose) chosen_at_ = seen;
   std::optional<HeaveFilter> best;
-  double chosen = swell_;
+  double most = 0, chosen = swell_;
   for (const double swell : choose ? std::span<const double>(kSwells) : std::span<const double>(&swell_, 1)) {
     const SeaModel& sea = identifier_.identify(swell);
-    HeaveFilter filter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor));
+    HeaveFilter filter =
+        calm ? *calm : HeaveFilter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor));
+    if (calm) filter.begin_sea(sea);
     for (const Step& step : steps) filter.step(step.increment, step.disturbance_m2ps3);
-    if (!best || filter.log_likelihood() > best->log_likelihood()) {
+    const double log_likelihood = filter.log_likelihood() - kLargeSwell * std::log(swell);
+    if (!best || log_likelihood > most) {
+      most = log_likelihood;
       best = std::move(filter);
       chosen = swell;
     }
@@ -181,12 +215,23 @@ AttitudeSample Realtime::rethink() {
     if (i >= before && i - before < held_.size()) locate(attitude[i], held_[i - before]);
   }
   due_ = false;
-  filter_ = most_probable(steps);
+  thought_at_ = nodes_;
+  filter_ = most_probable(nullptr, steps);
   if (static_cast<double>(nodes_) * kFineInterval_s > kRethought_s || first_.size() > kMostRethought) {
     rethinks_ = false;
     first_ = {};
   }
   return attitude.back();
+}
+
+// A sea that came up, filtered again from the calm on as if it had been known: the first of it was taken for
+// drift. It is still told without a jump: who looks at its waves would take that for one of them.
+void Realtime::rethink_rise() {
+  const HeaveFilter before = std::exchange(filter_, most_probable(&rise_->filter, rise_->steps));
+  const PathIncrement partial = integrator_.partial();
+  const double since_s = integrator_.since_node_s();
+  jump_m_ += before.heave_m(partial, since_s) - filter_.heave_m(partial, since_s);
+  if (std::ssize(rise_->steps) > kRise) rise_.reset();
 }
 
 // Between which nodes the newest sample lies.
@@ -215,8 +260,10 @@ void Realtime::estimate(const Held& held, HeaveSample& out) const {
     out.heave_rate_mps = speed + held.partial.speed_mps - b * t;
     variance = filter_.lagged_variance_m2(ago - 1);
   }
-  out.heave_sigma_m =
-      std::sqrt(variance + systematic_variance_m2(filter_.model(), motion_, settings_.sensor));
+  out.heave_m += jump_m_;
+  out.heave_rate_mps -= jump_m_ / kJumpFades_s;
+  out.heave_sigma_m = std::sqrt(variance + square(jump_m_) +
+                                systematic_variance_m2(filter_.model(), motion_, settings_.sensor));
 }
 
 void Realtime::release(std::int64_t until_utime, Output& output) {

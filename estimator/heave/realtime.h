@@ -5,8 +5,8 @@
 // second apart. Between nodes heave is the double integral itself: gain one, no lag. The first minute is
 // gone through again with every new model of the sea, levelled by all that was seen since, as if attitude
 // and sea had been known from the start; what no spectrum shows yet, a swell under the sea, is settled by the
-// likelihood of the path. With a fixed lag each sample waits until the nodes after it have told more about
-// it.
+// likelihood of the path. What comes up after a rest is gone through again for its first half minute, from
+// the rest on. With a fixed lag each sample waits until the nodes after it have told more about it.
 #pragma once
 #include <deque>
 #include <optional>
@@ -39,12 +39,18 @@ class Realtime : public Method {
     PathIncrement increment;
     double disturbance_m2ps3;
   };
+  struct Since {  // a filter as it stood, and the steps from then on
+    HeaveFilter filter;
+    std::vector<Step> steps;
+  };
   void start_path(const ImuSample& sample, const AttitudeSample& attitude);
   void resume(const ImuSample& sample, Output& output);
   void follow(const ImuSample& sample, const AttitudeSample& attitude, std::vector<Step>& steps);
   void filter(const Step& step);
-  HeaveFilter most_probable(const std::vector<Step>& steps);
+  void remember(const Step& step);
+  HeaveFilter most_probable(const HeaveFilter* calm, const std::vector<Step>& steps);
   AttitudeSample rethink();
+  void rethink_rise();
   void locate(const AttitudeSample& attitude, Held& held) const;
   void estimate(const Held& held, HeaveSample& sample) const;
   void release(std::int64_t until_utime, Output& output);
@@ -60,15 +66,18 @@ class Realtime : public Method {
   std::vector<ImuSample> first_;         // from the start on, for as long as they are gone through again
   std::optional<AttitudeSample> start_;  // attitude of the first of them, as last found
   std::vector<Step> steps_;              // of the sample just added; a member for its memory
+  std::optional<Since> calm_;            // a second ago at most, in a calm
+  std::optional<Since> rise_;            // the end of a calm, for as long as it is gone through again
+  double jump_m_ = 0;                    // of heave when it was: taken back, and fading
   std::deque<PathIncrement> whole_;      // the newest node intervals, newest last
   std::deque<Held> held_;
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
   static constexpr int kOldEnough = 120, kOldestEnough = 480;
-  int old_enough_ = kOldEnough;  // fine nodes of one sea before another one is believed
-  double swell_ = 0;             // as last chosen,
-  std::int64_t chosen_at_ = 0;   // after this many nodes
-  MeanDisturbance disturbance_;  // since the last node
+  int old_enough_ = kOldEnough;                  // fine nodes of one sea before another one is believed
+  double swell_ = 0;                             // as last chosen
+  std::int64_t chosen_at_ = 0, thought_at_ = 0;  // nodes, when it was, and when all was last gone through
+  MeanDisturbance disturbance_;                  // since the last node
   Motion motion_;
   bool started_ = false, rethinks_ = true, due_ = false;
 };

@@ -1,12 +1,13 @@
 // SeaGuess: the sea's spectrum from the first seconds, before any block of samples can resolve it.
 //
-// A wind sea of any age and size has a known shape (Pierson, Moskowitz 1964). For some peak periods between 2
-// and 16 s, heights from a usual one down to a calm's, with the tail that the shape has and with tails that
-// end at three to nine times the peak (a float, a tank), the likelihood of what is seen at the nodes is
-// followed: each candidate predicts the next value from the last ones (Levinson), its size being the one that
-// makes its own errors as large as they are, the sensor's offset as unknown as it is. The guess is the
-// candidates' mean, each weighed with its likelihood over its own variance: an error counts by how large it
-// is beside the sea, so that a sea not yet told from a larger one is not taken for it.
+// A wind sea of any age and size has a known shape (Pierson, Moskowitz 1964). For some peak periods between
+// half a second and 16 s (below two: a tank, a board moved by hand), heights from a usual one down to a
+// calm's, with the tail that the shape has and with tails that end at three to nine times the peak (a float),
+// the likelihood of what is seen at the nodes is followed: each candidate predicts the next value from the
+// last ones (Levinson), its size being the one that makes its own errors as large as they are, the sensor's
+// offset as unknown as it is. The guess is the candidates' mean, each weighed with its likelihood over its
+// own variance: an error counts by how large it is beside the sea, so that a sea not yet told from a larger
+// one is not taken for it.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -28,16 +29,14 @@ class SeaGuess {
 
  private:
   struct Candidate {
-    Eigen::VectorXd density_m2s;
-    double prior = 1;        // flat seas are less usual than steep ones
+    Eigen::VectorXd shape;  // of the density, which is sum_m2s times it
+    double sum_m2s = 0;
+    double prior = 1;        // flat seas are less usual than steep ones, short ones than long
     double variance_m2 = 0;  // of the second differences
   };
-  struct OnePredictors {  // of one order, a row a candidate
-    Eigen::MatrixXd coefficients;
-    Eigen::ArrayXd variance_m2, log_variance;
-  };
   std::vector<Candidate> candidates_;
-  std::vector<OnePredictors> predictors_;  // by order
+  Predictors<Eigen::Dynamic> predictors_;         // a row a candidate
+  std::vector<Eigen::ArrayXd> log_variances_of_;  // of theirs, by order
   Eigen::ArrayXd errors_, log_variances_;  // of each candidate: sums; squared errors are over their variances
   Eigen::VectorXd newest_;                 // second differences, newest first
   double mean_m_ = 0, squares_m2_ = 0;     // of second differences; squares about the mean

@@ -15,6 +15,7 @@ constexpr int kKept = 16;              // of the old sea's nodes, which saw the 
 constexpr double kResolved = 2.5;      // cycles a block: what a Hann window keeps apart from the mean
 constexpr double kUnlike = 0.6;        // divergence from which on a guess tells little
 constexpr double kCameUp = 0.1;        // of a guess's weight, of a sea that came up
+constexpr double kSwellEnd_hz = 0.21;  // the short waves of a sea far away do not get here
 constexpr double kLeastShare = 1e-9;   // of a sea in one bin
 constexpr double kFirstRidge = 3e-6;   // of a sea's variance, as model_of_density has it
 constexpr double kRidge = 1e-7;        // of a sea well known
@@ -113,7 +114,10 @@ const SeaModel& SeaIdentifier::identify(double swell) {
   const double df = 1 / (kDt * settings_.block);
   SeaAndNoise split{guesses_ ? guess_.density_m2s() : unknown_, settings_.accel_noise_m2ps3, 1};
   Eigen::VectorXd& sea = split.heave_density_m2s;
-  if (guesses_) sea += swell * sea.sum() / unknown_.sum() * unknown_;
+  if (guesses_) {
+    const auto end = std::lround(kSwellEnd_hz / df);
+    sea.head(end) += swell * sea.sum() / unknown_.head(end).sum() * unknown_.head(end);
+  }
   if (weight_ > 0) {
     const Eigen::VectorXd guess = sea;
     split = split_sea_from_noise(density_, kDt, settings_.accel_noise_m2ps3, lowest_hz_);

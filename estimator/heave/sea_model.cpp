@@ -16,25 +16,6 @@ constexpr double kUnknownRidge = 1e-5;
 
 }  // namespace
 
-Predictors levinson(const Eigen::VectorXd& r) {
-  const Eigen::Index n = r.size() - 1;
-  Predictors p;
-  p.coefficients.emplace_back(0);
-  p.variance.push_back(r[0]);
-  for (Eigen::Index m = 1; m <= n; ++m) {
-    const Eigen::VectorXd& a = p.coefficients.back();
-    double numerator = r[m];
-    for (Eigen::Index j = 1; j < m; ++j) numerator -= a[j - 1] * r[m - j];
-    const double reflection = numerator / p.variance.back();
-    Eigen::VectorXd next(m);
-    for (Eigen::Index j = 1; j < m; ++j) next[j - 1] = a[j - 1] - reflection * a[m - j - 1];
-    next[m - 1] = reflection;
-    p.coefficients.push_back(std::move(next));
-    p.variance.push_back(p.variance.back() * (1 - reflection * reflection));
-  }
-  return p;
-}
-
 void SeaModel::set_noise(double density_m2ps3) {
   accel_noise_m2ps3 = density_m2ps3;
   bias_walk_m2ps5 = density_m2ps3 * kBiasCorner_radps * kBiasCorner_radps;
@@ -62,9 +43,9 @@ SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double i
   model.mean_frequency_radps =
       model.autocovariance_m2[0] > 0 ? std::sqrt(m2 / model.autocovariance_m2[0]) : 0.0;
   model.autocovariance_m2[0] *= 1 + ridge;
-  const Predictors predictors = levinson(model.autocovariance_m2);
+  const Predictors<1> predictors = levinson(model.autocovariance_m2);
   model.ar = predictors.coefficients.back();
-  model.innovation_m2 = predictors.variance.back();
+  model.innovation_m2 = predictors.variance.back().value();
   return model;
 }
 

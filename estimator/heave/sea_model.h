@@ -6,6 +6,7 @@
 //     d'' = b + n_a,   b' = n_b              (n_a: acceleration noise, b: slow bias, n_b: its walk)
 #pragma once
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 namespace waverig::estimator {
@@ -27,12 +28,39 @@ struct SeaModel {
   double heave_variance_m2() const { return autocovariance_m2[0]; }
 };
 
-// One-step predictors of every order 0 … n of a stationary process (Levinson 1947, Durbin 1960).
+// One-step predictors of every order 0 … n of stationary processes, a row each (Levinson 1947, Durbin 1960).
+template <int Rows>
 struct Predictors {
-  std::vector<Eigen::VectorXd> coefficients;  // [m] has m entries
-  std::vector<double> variance;               // of their errors
+  std::vector<Eigen::Matrix<double, Rows, Eigen::Dynamic>> coefficients;  // [m] has m columns
+  std::vector<Eigen::Array<double, Rows, 1>> variance;                    // of their errors
 };
-Predictors levinson(const Eigen::VectorXd& autocovariance);
+
+// autocovariance: a column a lag, 0 … n.
+template <int Rows>
+Predictors<Rows> levinson(const Eigen::Matrix<double, Rows, Eigen::Dynamic>& autocovariance) {
+  using Column = Eigen::Array<double, Rows, 1>;
+  using Coefficients = Eigen::Matrix<double, Rows, Eigen::Dynamic>;
+  const auto& r = autocovariance.array();
+  Predictors<Rows> p{{Coefficients(r.rows(), 0)}, {r.col(0)}};
+  for (Eigen::Index m = 1; m < r.cols(); ++m) {
+    const Coefficients& a = p.coefficients.back();
+    Column reflection = r.col(m);
+    for (Eigen::Index j = 1; j < m; ++j) reflection -= a.col(j - 1).array() * r.col(m - j);
+    reflection /= p.variance.back();
+    Coefficients next(r.rows(), m);
+    for (Eigen::Index j = 1; j < m; ++j)
+      next.col(j - 1).array() = a.col(j - 1).array() - reflection * a.col(m - j - 1).array();
+    next.col(m - 1) = reflection;
+    p.coefficients.push_back(std::move(next));
+    p.variance.push_back(p.variance.back() * (1 - reflection.square()));
+  }
+  return p;
+}
+
+// Of one process: its lags.
+inline Predictors<1> levinson(const Eigen::VectorXd& autocovariance) {
+  return levinson(Eigen::RowVectorXd(autocovariance));
+}
 
 // The model, with nodes interval_s apart, of a sea with the given density of heave (two-sided, m^2 s, at i *
 // df_hz). ridge: of the variance, white: how far no frequency is ruled out.

@@ -123,6 +123,39 @@ TEST(Realtime, IsNotLostInASwellThatNoSpectrumShowsYet) {
   EXPECT_LT(std::sqrt(squares), 0.09);
 }
 
+// A swell under a wind sea looks like drift for as long as it is not believed to be there: once the filter was metres off.
+TEST(Realtime, TellsASwellUnderAWindSeaFromDrift) {
+  for (const SeaCase& sea : {SeaCase{.tp_s = 5, .hm0_m = 1, .duration_s = 60, .swell_tp_s = 14, .swell_hm0_m = 1},
+                             {.tp_s = 4, .hm0_m = 1, .duration_s = 60, .swell_tp_s = 15, .swell_hm0_m = 2}}) {
+    double squares_m2 = 0, n = 0;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+      const SeaRecord record = sea_record(sea, seed);
+      const Collector out = run_realtime(record.samples);
+      for (std::size_t i = 2000; i < out.heaves.size(); ++i, ++n)
+        squares_m2 += square(out.heaves[i].heave_m - record.heave_m[i]);
+    }
+    EXPECT_LT(std::sqrt(squares_m2 / n), 0.12 * std::hypot(sea.hm0_m, sea.swell_hm0_m)) << sea.tp_s << " s";
+  }
+}
+
+// As on the rig: what begins after a rest is known from where it began, the swift shaking of a board as well as a swell.
+TEST(Realtime, FollowsMotionThatBeginsAfterARest) {
+  struct Motion {
+    double tp_s, hm0_m, rms;
+  };
+  for (const Motion& motion : {Motion{0.65, 0.4, 0.075}, {6, 1, 0.053}, {12, 1, 0.08}}) {
+    double squares_m2 = 0, n = 0;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+      const SeaRecord record =
+          changing_record({.hm0_m = 1e-3}, {.tp_s = motion.tp_s, .hm0_m = motion.hm0_m, .duration_s = 60}, 20, 3, seed);
+      const Collector out = run_realtime(record.samples);
+      for (std::size_t i = 2000; i < out.heaves.size(); ++i, ++n)
+        squares_m2 += square(out.heaves[i].heave_m - record.heave_m[i]);
+    }
+    EXPECT_LT(std::sqrt(squares_m2 / n), motion.rms * motion.hm0_m) << motion.tp_s << " s";
+  }
+}
+
 // Twenty seconds is longer than any sea that is guessed, and than what a short block of samples tells from drift.
 TEST(Realtime, LearnsRegularWavesWithinMinutesHoweverLong) {
   for (const Limit& limit : {Limit{3, 0.6, 0.01}, {6, 1, 0.01}, {12, 1, 0.02}, {16, 1, 0.025}, {20, 1, 0.035}}) {
