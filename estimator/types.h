@@ -10,6 +10,8 @@ namespace waverig::estimator {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
+constexpr double square(double x) { return x * x; }
+
 struct ImuSample {
   std::int64_t utime = 0;                 // middle of the measurement interval, microseconds
   std::int64_t seq = 0;

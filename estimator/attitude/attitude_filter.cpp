@@ -13,8 +13,6 @@ constexpr double kSaturatedAccel_mps2 = 10.0;
 constexpr double kStartPath_m = 1.0, kStartSpeed_mps = 1.0;
 constexpr double kSettledTilt_rad = 0.25 * kDegree;
 
-double square(double x) { return x * x; }
-
 }  // namespace
 
 TiltChain::TiltChain(const AttitudeSettings& s) {

@@ -16,8 +16,6 @@ constexpr double kSaturatedNoise_m2ps3 = 1.0;  // several m/s^2 for tenths of a 
 constexpr double kSlowestSea_radps = 0.2;
 constexpr double kImprobable = 3;  // standard deviations
 
-double square(double x) { return x * x; }
-
 double turned_mps2(const Motion& motion, const SensorKnowledge& sensor) {
   return std::max(
       std::hypot(sensor.accel_bias_sigma_mps2, sensor.accel_misalignment_sigma_rad * sensor.gravity_mps2),

@@ -32,8 +32,6 @@ constexpr double kOffsetDoubt = 2;              // a sensor that is off is not t
 constexpr std::size_t kMostRethought = 60'000;  // samples
 constexpr double kAtOnce = 1.1;
 
-double square(double x) { return x * x; }
-
 SeaIdentifierSettings identifier_settings(const SensorKnowledge& sensor) {
   SeaIdentifierSettings s;
   s.guess_weight = kGuessWeight;

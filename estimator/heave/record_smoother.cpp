@@ -16,8 +16,6 @@ constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabo
 constexpr int kOrder = 48;             // of the autoregression: 24 s
 constexpr int kBlock = 1024;           // fine nodes of a periodogram: 256 s
 
-double square(double x) { return x * x; }
-
 // One piece without a gap, seen from the nodes.
 struct Piece {
   std::size_t begin = 0, end = 0;  // samples

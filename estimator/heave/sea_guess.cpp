@@ -21,7 +21,7 @@ constexpr double kPriorValues = 1;    // as many values say that the size is the
 constexpr double kNegligible = 1e-8;  // likelihood, beside the best one's
 constexpr int kFolds = 3;             // times the nodes' own frequencies: as far as short seas go on
 
-// What nodes that are 2 (bins - 1) df apart in frequency see of a density that goes on.
+// What nodes see, up to half their rate, of a density that goes on above it.
 Eigen::VectorXd folded(const Eigen::VectorXd& density, Eigen::Index bins) {
   Eigen::VectorXd seen = density.head(bins);
   const Eigen::Index period = 2 * (bins - 1);
@@ -45,13 +45,13 @@ SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3, dou
   Eigen::MatrixXd r_m2(kPeriods * std::ssize(kTailEnds) * std::ssize(kHeights), kOrder + 1);
   for (int p = -kShorter; p <= kLonger; ++p) {
     const double tp_s = kUsual_s * std::pow(kRatio, p), hm0_m = kSteepness_s2m * tp_s * tp_s;
-    // Of waves shorter than usual ones none is more likely than another, though an error counts more beside
-    // their variance, which goes with Tp^4.
+    // A candidate is weighed over its variance, which goes with Tp^4: below what is usual, the shorter are
+    // not to count the more for it.
     const double usual = std::min(std::pow(tp_s / kUsual_s, 4), 1.0);
     const Eigen::VectorXd whole =
         pierson_moskowitz_m2s(hm0_m * hm0_m / 16, tp_s, kFolds * (bins - 1) + 1, df_hz);
     for (const double end : kTailEnds) {
-      const auto length = static_cast<Eigen::Index>(std::ceil(std::min(end / (tp_s * df_hz), 1e6)));
+      const auto length = static_cast<Eigen::Index>(std::ceil(end / (tp_s * df_hz)));
       Eigen::VectorXd cut = whole;
       cut.tail(std::max(cut.size() - length, Eigen::Index{0})).setZero();
       const Eigen::VectorXd sea = folded(cut, bins);

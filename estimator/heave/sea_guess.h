@@ -24,7 +24,7 @@ class SeaGuess {
   void restart();                        // nothing was seen
   void gap();                            // the next value does not follow on the last
   void add(double second_difference_m);  // the next of the path (node_spectrum.h)
-  // Two-sided, m^2 s. Of nothing seen yet: each candidate alike, at a usual steepness.
+  // Two-sided, m^2 s. Of nothing seen yet: by the priors alone.
   Eigen::VectorXd density_m2s() const;
 
  private:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/types.h"
+
 namespace waverig::estimator {
 namespace {
 
@@ -23,8 +25,6 @@ constexpr double kShortRecord = 0.01;  // weight of its periodograms
 constexpr double kYoung = 0.2;         // of a grown sea's slow waves, in one that just came up
 constexpr double kLeastSea = 1e-4;     // of the unknown sea: what a calm may still become
 constexpr double kCalm = 1e-3;         // of the unknown sea: a calm
-
-double square(double x) { return x * x; }
 
 // Kullback, Leibler 1951: how unlike the guess the shape of what is seen is. Of periodograms of a sea of that
 // very shape 0.2 to 0.4, of a single wave 1 to 4.

@@ -19,8 +19,6 @@ constexpr int kOverlap = 4;          // blocks begin every quarter of their leng
 constexpr int kPadding = 4;          // of a block, for the peak between its frequencies
 constexpr double kFewWaves = 20;
 
-double square(double x) { return x * x; }
-
 // The nodes of one piece without a gap: second differences of the path, and smoothed heave and rate beside
 // them.
 struct Nodes {

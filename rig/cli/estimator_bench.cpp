@@ -22,7 +22,7 @@ constexpr double kSettled_s = 300;
 constexpr double kTilt_rad = 3 * kDegree;  // of a regular wave's platform
 constexpr std::array kRelativeFrequencies = {0.7, 1.0, 1.3, 1.6, 2.0, 3.0, 4.0};  // of the peak's
 
-double square(double x) { return x * x; }
+using estimator::square;
 
 // Motion by motion: both answer body motion at a time.
 template <class Motion>

@@ -122,7 +122,7 @@ inline SeaRecord changing_record(const SeaCase& first, const SeaCase& c, double 
   });
 }
 
-inline double square(double x) { return x * x; }
+using estimator::square;
 
 // Of an estimate against the truth from sample `begin` to `end`, mean removed; as a part of 4 std of the whole truth.
 inline double rms_over_hm0(const std::vector<estimator::HeaveSample>& estimate, const SeaRecord& record,
