@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "estimator/heave/node_spectrum.h"
 
 namespace waverig::estimator {
 namespace {
@@ -21,6 +24,12 @@ constexpr double kUsualGrowth = 1.02;  // a node; how soon the variance of innov
 constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
 constexpr double kCalmDown = 0.95;    // a node
 constexpr double kRoughShare = 0.05;  // of a node in the mean that tells another sea
+constexpr double kQuiet = 0.06;  // of the sea's acceleration: a body that rests, its sensor's noise and all
+constexpr double kShortestRest_s = 1.5;
+constexpr double kRestVariance_m2 = 1e-8;  // by which a resting body is found to have moved, a node
+constexpr double kRestLevel = 0.05;        // of the sea's variance: how far from its mean level it rests
+constexpr Surprise kStirs{40, 3};          // of a rest that is none
+constexpr int kOnset = 16;  // nodes of a sea that begins again: it need not be another one for being rough
 
 Eigen::Matrix3d drift_transition(double dt) {
   Eigen::Matrix3d F;
@@ -47,6 +56,7 @@ void HeaveFilter::set_model(const SeaModel& model) {
 
 void HeaveFilter::begin_sea(const SeaModel& model) {
   set_model(model);
+  begin_from_rest();
   restlessness_ = kNewSea;
 }
 
@@ -60,12 +70,36 @@ void HeaveFilter::begin(const SeaModel& model, const Eigen::Matrix3d& drift) {
   P_.bottomRightCorner<3, 3>() = drift;
 }
 
-void HeaveFilter::step(const PathIncrement& increment, double disturbance_m2ps3) {
+// Of its waves nothing is known yet but that they begin near the level of the rest; speed and bias are known.
+void HeaveFilter::begin_from_rest() {
+  Eigen::Matrix3d drift = P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>();
+  drift.row(0).setZero();
+  drift.col(0).setZero();
+  drift(0, 0) = kRestLevel * model_.heave_variance_m2();
+  begin(model_, drift);
+}
+
+void HeaveFilter::step(const HeaveStep& step) {
   const double dt = model_.interval_s;
-  path_m_ += dt * (speed_mps_ - dt * bias_mps2_ / 2) + increment.path_m;
-  speed_mps_ += increment.speed_mps - dt * bias_mps2_;
-  predict(std::max(model_.accel_noise_m2ps3, disturbance_m2ps3));
+  path_m_ += dt * (speed_mps_ - dt * bias_mps2_ / 2) + step.increment.path_m;
+  speed_mps_ += step.increment.speed_mps - dt * bias_mps2_;
+  const double told_m = path_m_;
+  const bool rested = rests_;
+  look_for_rest(step);
+  if (rested && !rests_) begin_from_rest();
+  predict(std::max(model_.accel_noise_m2ps3, step.disturbance_m2ps3));
   update();
+  correction_m_ = rested || rests_ ? path_m_ - told_m : 0.0;
+}
+
+// Half a wave is the least: any sea has moments without acceleration.
+void HeaveFilter::look_for_rest(const HeaveStep& step) {
+  const double dt = model_.interval_s;
+  const double a_mps2 = second_difference_m(last_, step.increment, dt) / (dt * dt) - bias_mps2_;
+  last_ = step.increment;
+  const bool quiet = std::hypot(a_mps2, step.turn_mps2) < kQuiet * model_.acceleration_mps2();
+  quiet_ = quiet ? quiet_ + 1 : 0;
+  rests_ = quiet_ * dt > std::max(kShortestRest_s, std::numbers::pi / model_.mean_frequency_radps);
 }
 
 void HeaveFilter::skip(int intervals) {
@@ -77,11 +111,15 @@ void HeaveFilter::skip(int intervals) {
   P_(n + 1, n + 1) = kSpeedVariance_m2ps2;
   path_m_ = z_[0];
   speed_mps_ = 0;
+  last_ = {};
+  quiet_ = 0;
+  rests_ = false;
 }
 
 void HeaveFilter::predict(double noise_m2ps3) {
   const int n = model_.order();
-  const Eigen::VectorXd& a = model_.ar;
+  const Eigen::VectorXd at_rest = rests_ ? Eigen::VectorXd::Unit(n, 0) : Eigen::VectorXd();
+  const Eigen::VectorXd& a = rests_ ? at_rest : model_.ar;
   const double z = a.dot(z_);
   for (int i = n - 1; i > 0; --i) z_[i] = z_[i - 1];
   z_[0] = z;
@@ -95,7 +133,7 @@ void HeaveFilter::predict(double noise_m2ps3) {
     P_.col(j).segment(j, n - j) = P_.col(j - 1).segment(j - 1, n - j);
     P_.col(j).tail<3>() = F * P_.col(j - 1).tail<3>();
   }
-  P_(0, 0) = a.dot(Pa) + surprise_ * model_.innovation_m2;
+  P_(0, 0) = a.dot(Pa) + (rests_ ? kRestVariance_m2 : surprise_ * model_.innovation_m2);
   P_.col(0).segment(1, n - 1) = Pa.head(n - 1);
   P_.col(0).tail<3>() = with_drift;
   Eigen::Matrix3d D = P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>();
@@ -115,20 +153,33 @@ void HeaveFilter::update() {
   PH.head(n) += P_.row(n).head(n).transpose();
   PH.tail<3>() += P_.col(n).tail<3>();
   double S = PH[0] + PH[n] + kMeasurementVariance_m2;
-  // A sea that rises faster than the model is learned anew: believe the motion, and leave the drift as it is.
   const double ratio = innovation * innovation / S;
-  usual_variance_m2_ = std::min(S, kUsualGrowth * usual_variance_m2_);
-  roughness_ += kRoughShare * (innovation * innovation / usual_variance_m2_ - roughness_);
-  restlessness_ += kRestlessShare * (std::min(ratio, kMostRestless) - restlessness_);
-  const Surprise& surprise = restlessness_ > kRestlessFrom ? kRestless : kSteady;
-  if (ratio > surprise.from) {
-    const double more = S * (ratio / surprise.taken - 1);
+  const auto take_for_sea = [&](double times) {
+    const double more = S * (times - 1);
     P_(0, 0) += more;
     PH[0] += more;
     S += more;
-    surprise_ = std::min(surprise_ * std::min(ratio / surprise.taken, kFastestRise), kLargestSurprise);
-  } else {
-    surprise_ = 1 + kCalmDown * (surprise_ - 1);
+  };
+  stirs_ = rests_ && ratio > kStirs.from;
+  if (stirs_) {
+    take_for_sea(ratio / kStirs.taken);
+    quiet_ = 0;
+  }
+  onset_ = rests_ ? kOnset : std::max(onset_ - 1, 0);
+  if (onset_ == 0) {
+    usual_variance_m2_ = std::min(S, kUsualGrowth * usual_variance_m2_);
+    roughness_ += kRoughShare * (innovation * innovation / usual_variance_m2_ - roughness_);
+  }
+  // A sea that rises faster than the model is learned anew: believe the motion, leave the drift as it is.
+  if (!rests_) {
+    restlessness_ += kRestlessShare * (std::min(ratio, kMostRestless) - restlessness_);
+    const Surprise& surprise = restlessness_ > kRestlessFrom ? kRestless : kSteady;
+    if (ratio > surprise.from) {
+      take_for_sea(ratio / surprise.taken);
+      surprise_ = std::min(surprise_ * std::min(ratio / surprise.taken, kFastestRise), kLargestSurprise);
+    } else {
+      surprise_ = 1 + kCalmDown * (surprise_ - 1);
+    }
   }
   log_likelihood_ -= 0.5 * (std::log(S) + innovation * innovation / S);
   const Eigen::VectorXd gain = PH / S;

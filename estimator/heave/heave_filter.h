@@ -5,6 +5,10 @@
 // once, so that path and speed are the estimate; the older heaves in the state are fixed-lag smoothed by
 // every later measurement. What surprises is taken for sea, not for drift: in a steady sea only what no such
 // sea does, in a restless one (that rises, or is made by hand) whatever is larger than usual.
+//
+// A rest in the middle of a sea (a rig between two runs, a board that is put down) is told by half a wave in
+// which nothing about the body moves as the sea would move it: z then stands, and the path tells speed and
+// bias alone. The sea that begins again is the same one, near the level of the rest.
 #pragma once
 #include <Eigen/Core>
 #include <limits>
@@ -14,18 +18,23 @@
 
 namespace waverig::estimator {
 
+struct HeaveStep {  // one node interval
+  PathIncrement increment;
+  // Two-sided density of the acceleration's noise where that is known to be more than the model's, which is
+  // an average (attitude not settled, saturated samples; disturbance.h).
+  double disturbance_m2ps3 = 0;
+  double turn_mps2 = 0;  // change of the mean specific force, in the body's axes, from the interval before
+};
+
 class HeaveFilter {
  public:
   // offset_sigma_mps2: standard uncertainty of the mean vertical acceleration, the sensor's offset.
   HeaveFilter(const SeaModel& model, double offset_sigma_mps2);
   // Keeps the drift; where the nodes lie otherwise from now on, the older heaves are forgotten.
   void set_model(const SeaModel& model);
-  void begin_sea(const SeaModel& model);  // the same, of a sea that just came up
+  void begin_sea(const SeaModel& model);  // the same, of a sea that just came up out of a calm
 
-  // One node interval's increment. disturbance_m2ps3: two-sided density of the acceleration's noise where
-  // that is known to be more than the model's, which is an average (attitude not settled, saturated samples;
-  // disturbance.h).
-  void step(const PathIncrement& increment, double disturbance_m2ps3);
+  void step(const HeaveStep& step);
   // Node intervals without samples: the sea runs on by its model, path and speed are lost.
   void skip(int intervals);
 
@@ -43,12 +52,17 @@ class HeaveFilter {
   double lagged_variance_m2(int lag) const { return P_(lag, lag); }
   double log_likelihood() const { return log_likelihood_; }  // of all steps, but for a constant
   bool surprised() const { return roughness_ > kTooRough; }  // the model has become too small for the motion
+  double rest_s() const { return rests_ ? quiet_ * model_.interval_s : 0; }  // how long the body has rested
+  bool stirs() const { return stirs_; }  // taken to rest, and moved, by far less than the sea would
+  double correction_m() const { return correction_m_; }  // of heave by the last step, if by a rest
   const SeaModel& model() const { return model_; }
   int order() const { return model_.order(); }
   double bias_mps2() const { return bias_mps2_; }
 
  private:
   void begin(const SeaModel& model, const Eigen::Matrix3d& drift);
+  void begin_from_rest();
+  void look_for_rest(const HeaveStep& step);
   void predict(double noise_m2ps3);
   void update();
 
@@ -64,6 +78,11 @@ class HeaveFilter {
   static constexpr double kNewSea = 2;
   double restlessness_ = kNewSea;  // mean of half a minute's, capped; restless until it is found steady
   double surprise_ = 1;  // how many times the model's innovation variance the sea is found to have just now
+  PathIncrement last_;
+  int quiet_ = 0;  // nodes without motion
+  int onset_ = 0;  // nodes still to go after a rest, until roughness may tell of another sea
+  bool rests_ = false, stirs_ = false;
+  double correction_m_ = 0;
 };
 
 }  // namespace waverig::estimator

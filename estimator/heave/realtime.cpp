@@ -24,7 +24,9 @@ constexpr std::array kSwells = {5e-4, 0.03, 0.5};  // relative variances, of whi
 constexpr double kLargeSwell = 0.3;                // a swell is the less usual the larger, by this power
 constexpr int kRethoughtAgain = 12;                // when surprised, with a twelfth more seen
 constexpr std::ptrdiff_t kOnset = 4;               // nodes; a rise is seen so much later than it begins
-constexpr std::ptrdiff_t kRise = 120;              // nodes after it that are gone through again
+constexpr std::ptrdiff_t kRise = 80;               // nodes after it that are gone through again
+constexpr std::int64_t kMayJump = 80;              // nodes; later, what is told has been taken for waves
+constexpr double kSeaIsGone_s = 12;                // after a rest of that length
 constexpr double kJumpFades_s = 4;
 constexpr double kChosenAgain = 1.5;            // times the nodes, while the sea is guessed
 constexpr double kGuessWeight = 3;              // periodograms of less than a minute tell little
@@ -74,7 +76,7 @@ void Realtime::add(const ImuSample& raw, Output& output) {
     start_path(sample, attitude);
   } else {
     follow(sample, attitude, steps_);
-    for (const Step& step : steps_) filter(step);
+    for (const HeaveStep& step : steps_) filter(step);
     steps_.clear();
   }
   if (rethinks_) first_.push_back(sample);
@@ -103,10 +105,19 @@ void Realtime::finish(Output& output) {
   if (!held_.empty()) release(held_.back().sample.utime, output);
 }
 
+double Realtime::MeanForce::change_mps2() {
+  const Vector3d mean_B = count > 0 ? Vector3d(sum_B / count) : before_B;
+  const double change = (mean_B - std::exchange(before_B, mean_B)).norm();
+  sum_B.setZero();
+  count = 0;
+  return change;
+}
+
 void Realtime::start_path(const ImuSample& sample, const AttitudeSample& attitude) {
   integrator_.start(sample.utime, -attitude.a_N.z());
   whole_.clear();
   disturbance_ = {};
+  force_ = {};
   started_ = true;
 }
 
@@ -124,14 +135,16 @@ void Realtime::resume(const ImuSample& sample, Output& output) {
 }
 
 // Appends the node intervals that end with the sample.
-void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude, std::vector<Step>& steps) {
+void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude,
+                      std::vector<HeaveStep>& steps) {
   const double share =
       std::max(1.0 / static_cast<double>(++samples_), guard_.usual_interval_s() / kMotionMemory_s);
   motion_.follow(attitude, share);
   disturbance_.add(disturbance_m2ps3(attitude, sample.flags, settings_.sensor.gravity_mps2) +
                    turned_offset_m2ps3(attitude, motion_, settings_.sensor));
+  force_.add(sample.f_B);
   integrator_.add(sample.utime, -attitude.a_N.z(), [&](std::int64_t, const PathIncrement& increment) {
-    steps.push_back({increment, disturbance_.mean()});
+    steps.push_back({increment, disturbance_.mean(), force_.change_mps2()});
     disturbance_ = {};
     whole_.push_back(increment);
     if (std::ssize(whole_) > filter_.order()) whole_.pop_front();
@@ -140,10 +153,16 @@ void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude, s
   });
 }
 
-void Realtime::filter(const Step& step) {
+void Realtime::filter(const HeaveStep& step) {
   remember(step);
-  filter_.step(step.increment, step.disturbance_m2ps3);
+  filter_.step(step);
+  jump_m_ -= filter_.correction_m();
   ++settled_nodes_;
+  if (!rethinks_ && (filter_.stirs() || filter_.rest_s() > kSeaIsGone_s)) {
+    rise_.reset();
+    forget_sea(true);
+    return;
+  }
   // What comes up in a calm is new, however short the calm was.
   if (!filter_.surprised()) return;
   if (identifier_.age() > old_enough_ || (rethinks_ && identifier_.calm())) {
@@ -151,16 +170,20 @@ void Realtime::filter(const Step& step) {
     const bool at_once = identifier_.age() < kAtOnce * old_enough_;
     old_enough_ = at_once ? std::min(2 * old_enough_, kOldestEnough) : kOldEnough;
     rise_ = identifier_.calm() ? std::move(calm_) : std::nullopt;
-    calm_.reset();
-    chosen_at_ = 0;
-    identifier_.forget();
-    rethinks_ = false;
+    forget_sea(identifier_.calm());
   } else if (rethinks_) {
     due_ |= nodes_ > thought_at_ + thought_at_ / kRethoughtAgain;
   }
 }
 
-void Realtime::remember(const Step& step) {
+void Realtime::forget_sea(bool calm) {
+  calm_.reset();
+  chosen_at_ = 0;
+  identifier_.forget(calm);
+  rethinks_ = false;
+}
+
+void Realtime::remember(const HeaveStep& step) {
   if (rise_) rise_->steps.push_back(step);
   if (!identifier_.calm())
     calm_.reset();
@@ -171,7 +194,7 @@ void Realtime::remember(const Step& step) {
 
 // The filter after these steps, from the record's start or out of a calm, had their sea been known; of some
 // swells that may lie under it, the one which makes the path most probable.
-HeaveFilter Realtime::most_probable(const HeaveFilter* calm, const std::vector<Step>& steps) {
+HeaveFilter Realtime::most_probable(const HeaveFilter* calm, const std::vector<HeaveStep>& steps) {
   const double elapsed_s = static_cast<double>(nodes_) * kFineInterval_s;
   const auto seen = std::ssize(steps);
   const bool choose = identifier_.has_spectrum() ||
@@ -184,7 +207,7 @@ HeaveFilter Realtime::most_probable(const HeaveFilter* calm, const std::vector<S
     HeaveFilter filter =
         calm ? *calm : HeaveFilter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor));
     if (calm) filter.begin_sea(sea);
-    for (const Step& step : steps) filter.step(step.increment, step.disturbance_m2ps3);
+    for (const HeaveStep& step : steps) filter.step(step);
     const double log_likelihood = filter.log_likelihood() - kLargeSwell * std::log(swell);
     if (!best || log_likelihood > most) {
       most = log_likelihood;
@@ -206,7 +229,7 @@ AttitudeSample Realtime::rethink() {
   motion_ = {};
   identifier_.restart();
   start_path(first_.front(), attitude.front());
-  std::vector<Step> steps;
+  std::vector<HeaveStep> steps;
   const std::size_t before = first_.size() - 1 - held_.size();  // those that are answered
   for (std::size_t i = 0; i < first_.size(); ++i) {
     if (i > 0) follow(first_[i], attitude[i], steps);
@@ -214,7 +237,10 @@ AttitudeSample Realtime::rethink() {
   }
   due_ = false;
   thought_at_ = nodes_;
-  filter_ = most_probable(nullptr, steps);
+  if (nodes_ > kMayJump)
+    tell_without_jump(most_probable(nullptr, steps));
+  else
+    filter_ = most_probable(nullptr, steps);
   if (static_cast<double>(nodes_) * kFineInterval_s > kRethought_s || first_.size() > kMostRethought) {
     rethinks_ = false;
     first_ = {};
@@ -223,13 +249,18 @@ AttitudeSample Realtime::rethink() {
 }
 
 // A sea that came up, filtered again from the calm on as if it had been known: the first of it was taken for
-// drift. It is still told without a jump: who looks at its waves would take that for one of them.
+// drift.
 void Realtime::rethink_rise() {
-  const HeaveFilter before = std::exchange(filter_, most_probable(&rise_->filter, rise_->steps));
+  tell_without_jump(most_probable(&rise_->filter, rise_->steps));
+  if (std::ssize(rise_->steps) > kRise) rise_.reset();
+}
+
+// Who looks at the waves would take a jump for one of them.
+void Realtime::tell_without_jump(HeaveFilter filter) {
+  const HeaveFilter before = std::exchange(filter_, std::move(filter));
   const PathIncrement partial = integrator_.partial();
   const double since_s = integrator_.since_node_s();
   jump_m_ += before.heave_m(partial, since_s) - filter_.heave_m(partial, since_s);
-  if (std::ssize(rise_->steps) > kRise) rise_.reset();
 }
 
 // Between which nodes the newest sample lies.

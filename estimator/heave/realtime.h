@@ -5,8 +5,9 @@
 // second apart. Between nodes heave is the double integral itself: gain one, no lag. The first minute is
 // gone through again with every new model of the sea, levelled by all that was seen since, as if attitude
 // and sea had been known from the start; what no spectrum shows yet, a swell under the sea, is settled by the
-// likelihood of the path. What comes up after a rest is gone through again for its first half minute, from
-// the rest on. With a fixed lag each sample waits until the nodes after it have told more about it.
+// likelihood of the path. What comes up after a calm is gone through again for its first twenty seconds, from
+// the calm on. A rest in the middle of a sea is short, or the sea is gone. With a fixed lag each sample waits
+// until the nodes after it have told more about it.
 #pragma once
 #include <deque>
 #include <optional>
@@ -35,22 +36,29 @@ class Realtime : public Method {
     double since_node_s = 0, tilt_sigma_rad = 0;
     std::int64_t node = 0;  // number of that node
   };
-  struct Step {
-    PathIncrement increment;
-    double disturbance_m2ps3;
+  struct MeanForce {  // specific force in the body's axes, over a node interval
+    Vector3d sum_B = Vector3d::Zero(), before_B = Vector3d::Zero();
+    int count = 0;
+    void add(const Vector3d& f_B) {
+      sum_B += f_B;
+      ++count;
+    }
+    double change_mps2();  // from the interval before; the next one begins
   };
   struct Since {  // a filter as it stood, and the steps from then on
     HeaveFilter filter;
-    std::vector<Step> steps;
+    std::vector<HeaveStep> steps;
   };
   void start_path(const ImuSample& sample, const AttitudeSample& attitude);
   void resume(const ImuSample& sample, Output& output);
-  void follow(const ImuSample& sample, const AttitudeSample& attitude, std::vector<Step>& steps);
-  void filter(const Step& step);
-  void remember(const Step& step);
-  HeaveFilter most_probable(const HeaveFilter* calm, const std::vector<Step>& steps);
+  void follow(const ImuSample& sample, const AttitudeSample& attitude, std::vector<HeaveStep>& steps);
+  void filter(const HeaveStep& step);
+  void remember(const HeaveStep& step);
+  HeaveFilter most_probable(const HeaveFilter* calm, const std::vector<HeaveStep>& steps);
   AttitudeSample rethink();
   void rethink_rise();
+  void forget_sea(bool calm);
+  void tell_without_jump(HeaveFilter filter);
   void locate(const AttitudeSample& attitude, Held& held) const;
   void estimate(const Held& held, HeaveSample& sample) const;
   void release(std::int64_t until_utime, Output& output);
@@ -65,10 +73,10 @@ class Realtime : public Method {
 
   std::vector<ImuSample> first_;         // from the start on, for as long as they are gone through again
   std::optional<AttitudeSample> start_;  // attitude of the first of them, as last found
-  std::vector<Step> steps_;              // of the sample just added; a member for its memory
+  std::vector<HeaveStep> steps_;         // of the sample just added; a member for its memory
   std::optional<Since> calm_;            // a second ago at most, in a calm
   std::optional<Since> rise_;            // the end of a calm, for as long as it is gone through again
-  double jump_m_ = 0;                    // of heave when it was: taken back, and fading
+  double jump_m_ = 0;                    // of heave when it was, or by a rest: taken back, and fading
   std::deque<PathIncrement> whole_;      // the newest node intervals, newest last
   std::deque<Held> held_;
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
@@ -78,6 +86,7 @@ class Realtime : public Method {
   double swell_ = 0;                             // as last chosen
   std::int64_t chosen_at_ = 0, thought_at_ = 0;  // nodes, when it was, and when all was last gone through
   MeanDisturbance disturbance_;                  // since the last node
+  MeanForce force_;
   Motion motion_;
   bool started_ = false, rethinks_ = true, due_ = false;
 };

@@ -16,7 +16,6 @@ constexpr int kGuessed = 80;           // nodes for which the guess is better th
 constexpr int kKept = 16;              // of the old sea's nodes, which saw the new one begin
 constexpr double kResolved = 2.5;      // cycles a block: what a Hann window keeps apart from the mean
 constexpr double kUnlike = 0.6;        // divergence from which on a guess tells little
-constexpr double kCameUp = 0.1;        // of a guess's weight, of a sea that came up
 constexpr double kSwellEnd_hz = 0.21;  // the short waves of a sea far away do not get here
 constexpr double kLeastShare = 1e-9;   // of a sea in one bin
 constexpr double kFirstRidge = 3e-6;   // of a sea's variance, as model_of_density has it
@@ -69,9 +68,9 @@ void SeaIdentifier::gap() {
   guess_.gap();
 }
 
-void SeaIdentifier::forget() {
+void SeaIdentifier::forget(bool out_of_calm) {
   if (std::ssize(newest_) > kKept) newest_.erase(newest_.begin(), newest_.end() - kKept);
-  guesses_ = calm();
+  guesses_ = out_of_calm;
   came_up_ = true;
   guess_.restart();
   weight_ = 0;
@@ -92,7 +91,7 @@ bool SeaIdentifier::add(const PathIncrement& increment) {
   const auto block = static_cast<std::ptrdiff_t>(settings_.block);
   if (std::ssize(newest_) > block) newest_.erase(newest_.begin(), newest_.end() - block);
   const auto n = static_cast<int>(newest_.size());
-  const bool guess_alone = guessing && n < (came_up_ ? kShortest : kGuessed);
+  const bool guess_alone = guessing && n < kGuessed;
   if (!guess_alone) periodogram();
   // Where there is a guess, periodograms that overlap by more tell it little.
   until_next_ = guess_alone ? std::max(n / kGuesses, 1) : std::min(n / (guesses_ ? 2 : 4), settings_.every);
@@ -129,8 +128,8 @@ const SeaModel& SeaIdentifier::identify(double swell) {
     else
       sea.head(slow) = guess.head(slow);
     if (guesses_) {
-      const double guessed = (came_up_ ? kCameUp : 1) * settings_.guess_weight *
-                             std::exp(-square(divergence(sea.tail(fast), guess.tail(fast)) / kUnlike));
+      const double guessed =
+          settings_.guess_weight * std::exp(-square(divergence(sea.tail(fast), guess.tail(fast)) / kUnlike));
       sea.tail(fast) += guessed / (guessed + weight_) * (guess.tail(fast) - sea.tail(fast));
     }
   }

@@ -33,7 +33,7 @@ class SeaIdentifier {
   const SeaModel& identify(double swell = 0);
   void restart();                   // nothing was added
   void gap();                       // the next increment does not follow on the last
-  void forget();                    // the sea is another one from about now on; out of a calm it is guessed
+  void forget(bool out_of_calm);    // the sea is another one from about now on; out of a calm it is guessed
   int age() const { return age_; }  // nodes since the start, or since it forgot
   const SeaModel& model() const { return model_; }   // as last identified
   bool has_spectrum() const { return weight_ > 0; }  // not the guess alone

@@ -21,6 +21,11 @@ void SeaModel::set_noise(double density_m2ps3) {
   bias_walk_m2ps5 = density_m2ps3 * kBiasCorner_radps * kBiasCorner_radps;
 }
 
+double SeaModel::acceleration_mps2() const {
+  const Eigen::VectorXd& r = autocovariance_m2;
+  return std::sqrt(std::max(6 * r[0] - 8 * r[1] + 2 * r[2], 0.0)) / (interval_s * interval_s);
+}
+
 SeaModel model_of_density(const Eigen::VectorXd& density, double df_hz, double interval_s, int order,
                           double ridge) {
   SeaModel model;

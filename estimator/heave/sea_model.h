@@ -26,6 +26,7 @@ struct SeaModel {
   void set_noise(double accel_noise_m2ps3);  // and the walk that goes with it
   int order() const { return static_cast<int>(ar.size()); }
   double heave_variance_m2() const { return autocovariance_m2[0]; }
+  double acceleration_mps2() const;  // of heave, root mean square: its second difference at the nodes
 };
 
 // One-step predictors of every order 0 … n of stationary processes, a row each (Levinson 1947, Durbin 1960).

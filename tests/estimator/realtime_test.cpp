@@ -147,7 +147,7 @@ TEST(Realtime, FollowsMotionThatBeginsAfterARest) {
   struct Motion {
     double tp_s, hm0_m, rms;
   };
-  for (const Motion& motion : {Motion{0.65, 0.4, 0.075}, {6, 1, 0.053}, {12, 1, 0.08}}) {
+  for (const Motion& motion : {Motion{0.65, 0.4, 0.06}, {6, 1, 0.045}, {12, 1, 0.055}}) {
     double squares_m2 = 0, n = 0;
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
       const SeaRecord record =
@@ -158,6 +158,82 @@ TEST(Realtime, FollowsMotionThatBeginsAfterARest) {
     }
     EXPECT_LT(std::sqrt(squares_m2 / n), motion.rms * motion.hm0_m) << motion.tp_s << " s";
   }
+}
+
+// Of a body at rest speed and bias are known exactly, and the sea that goes on after it is the same one.
+TEST(Realtime, GoesOnAfterARestInTheMiddleOfASea) {
+  struct Runs {
+    double tp_s, hm0_m, run_s, rest_s, rms;
+  };
+  for (const Runs& runs : {Runs{2, 0.3, 25, 6, 0.032}, {4, 1, 30, 8, 0.033}, {6, 1, 40, 10, 0.042}}) {
+    double squares_m2 = 0, n = 0;
+    const SeaCase sea{.tp_s = runs.tp_s, .hm0_m = runs.hm0_m, .duration_s = runs.run_s};
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      const auto [record, begins_s] = runs_and_rests(sea, sea, runs.rest_s, 8, seed);
+      const Collector out = run_realtime(record.samples);
+      for (std::size_t i = 0; i < out.heaves.size(); ++i) {
+        const double t_s = static_cast<double>(out.heaves[i].utime) * kMicrosecond;
+        const auto run = std::upper_bound(begins_s.begin() + 1, begins_s.end(), t_s) - 1;  // the first one is new
+        if (run == begins_s.begin() || t_s > *run + runs.run_s) continue;
+        squares_m2 += square(out.heaves[i].heave_m - record.heave_m[i]);
+        ++n;
+      }
+    }
+    EXPECT_LT(std::sqrt(squares_m2 / n), runs.rms * runs.hm0_m) << runs.tp_s << " s";
+  }
+}
+
+// Beside the sea that was, what is left of it moves the body no more than a rest does.
+TEST(Realtime, TakesNoLowSeaForARestOfTheOneBefore) {
+  struct Seas {
+    double tp_s, hm0_m, then_tp_s, then_hm0_m, soon, later;
+  };
+  for (const Seas& seas : {Seas{8, 4, 8, 0.2, 0.2, 0.14}, {3, 0.5, 16, 0.5, 0.21, 0.1}, {4, 2, 12, 0.2, 0.22, 0.15}}) {
+    double soon_m2 = 0, later_m2 = 0, n = 0, m = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      const auto [record, begins_s] =
+          runs_and_rests({.tp_s = seas.tp_s, .hm0_m = seas.hm0_m, .duration_s = 120},
+                         {.tp_s = seas.then_tp_s, .hm0_m = seas.then_hm0_m, .duration_s = 160}, 10, 2, seed);
+      const Collector out = run_realtime(record.samples);
+      for (std::size_t i = 0; i < out.heaves.size(); ++i) {
+        const double since_s = static_cast<double>(out.heaves[i].utime) * kMicrosecond - begins_s[1];
+        const double error_m2 = square(out.heaves[i].heave_m - record.heave_m[i]);
+        if (since_s > 0 && since_s < 60) soon_m2 += error_m2, ++n;
+        if (since_s > 60 && since_s < 160) later_m2 += error_m2, ++m;
+      }
+    }
+    EXPECT_LT(std::sqrt(soon_m2 / n), seas.soon * seas.then_hm0_m) << seas.tp_s << " s";
+    EXPECT_LT(std::sqrt(later_m2 / m), seas.later * seas.then_hm0_m) << seas.tp_s << " s";
+  }
+}
+
+// Not in the lowest group of waves, and not where only heave can tell of it.
+TEST(Realtime, TakesNoMomentOfASeaForARest) {
+  constexpr Eigen::Index kBins = 321;
+  constexpr double kDt = estimator::kFineInterval_s, kDf_hz = 0.5 / kDt / (kBins - 1);
+  for (const Limit& sea : {Limit{3, 0.5, 0}, {6, 1, 0}, {12, 4, 0}, {16, 6, 0}})
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      const auto density = estimator::pierson_moskowitz_m2s(sea.hm0_m * sea.hm0_m / 16, sea.tp_s, kBins, kDf_hz);
+      auto model = estimator::model_of_density(density, kDf_hz, kDt, 96, 1e-6);
+      model.set_noise(6e-6);
+      estimator::HeaveFilter filter(model, 0.02);
+      estimator::PathIntegrator integrator(kDt);
+      const SeaRecord record = sea_record(
+          {.tp_s = sea.tp_s, .hm0_m = sea.hm0_m, .duration_s = 1200, .slope_following = 0, .perfect_sensor = true}, seed);
+      double longest_s = 0;
+      for (const auto& sample : record.samples) {
+        const double up_mps2 = -sample.f_B.z() - kStandardGravity;
+        if (&sample == &record.samples.front()) {
+          integrator.start(sample.utime, up_mps2);
+        } else {
+          integrator.add(sample.utime, up_mps2, [&](std::int64_t, const estimator::PathIncrement& increment) {
+            filter.step({.increment = increment});
+            longest_s = std::max(longest_s, filter.rest_s());
+          });
+        }
+      }
+      EXPECT_EQ(longest_s, 0) << sea.tp_s << " s, seed " << seed;
+    }
 }
 
 // Twenty seconds is longer than any sea that is guessed, and than what a short block of samples tells from drift.

@@ -99,6 +99,16 @@ inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
   });
 }
 
+// From 0 to 1, smoothly, with its derivatives by time.
+struct Ramp {
+  double w, dw, ddw;
+};
+inline Ramp ramp(double t_s, double begins_s, double over_s) {
+  const double x = std::clamp((t_s - begins_s) / over_s, 0.0, 1.0);
+  return {x * x * x * (10 - 15 * x + 6 * x * x), 30 * x * x * (1 - x) * (1 - x) / over_s,
+          60 * x * (1 - x) * (1 - 2 * x) / (over_s * over_s)};
+}
+
 // A body that stays level in one sea until another has taken its place, smoothly from begins_s on over rises_s; c is the
 // second sea.
 inline SeaRecord changing_record(const SeaCase& first, const SeaCase& c, double begins_s, double rises_s,
@@ -109,17 +119,48 @@ inline SeaRecord changing_record(const SeaCase& first, const SeaCase& c, double 
       after(motion::draw_components(sea_settings(c.tp_s, c.hm0_m, seed + 1000)), level);
   return recorded(c, seed, [=](std::int64_t utime) mutable {
     const BodyMotion a = before.at(utime), b = after.at(utime);
-    const double x = std::clamp((static_cast<double>(utime) * kMicrosecond - begins_s) / rises_s, 0.0, 1.0);
-    const double w = x * x * x * (10 - 15 * x + 6 * x * x);  // and its derivatives by time
-    const double dw = 30 * x * x * (1 - x) * (1 - x) / rises_s,
-                 ddw = 60 * x * (1 - x) * (1 - 2 * x) / (rises_s * rises_s);
+    const Ramp r = ramp(static_cast<double>(utime) * kMicrosecond, begins_s, rises_s);
     BodyMotion m = a;
-    m.position_N += w * (b.position_N - a.position_N);
-    m.velocity_N += w * (b.velocity_N - a.velocity_N) + dw * (b.position_N - a.position_N);
-    m.acceleration_N += w * (b.acceleration_N - a.acceleration_N) + 2 * dw * (b.velocity_N - a.velocity_N) +
-                        ddw * (b.position_N - a.position_N);
+    m.position_N += r.w * (b.position_N - a.position_N);
+    m.velocity_N += r.w * (b.velocity_N - a.velocity_N) + r.dw * (b.position_N - a.position_N);
+    m.acceleration_N += r.w * (b.acceleration_N - a.acceleration_N) + 2 * r.dw * (b.velocity_N - a.velocity_N) +
+                        r.ddw * (b.position_N - a.position_N);
     return m;
   });
+}
+
+// The same, with a rest between the runs: each lasts c.duration_s and begins and ends within a second, runs of the first
+// sea and of the second taking turns. Where each run begins is in begins_s.
+struct RunsAndRests {
+  SeaRecord record;
+  std::vector<double> begins_s;
+};
+inline RunsAndRests runs_and_rests(const SeaCase& first, SeaCase c, double rest_s, int runs, std::uint64_t seed) {
+  constexpr double kRamp_s = 1, kFirst_s = 21;
+  motion::FloatSettings level;
+  level.slope_following = 0;
+  motion::SeaMotion odd(motion::draw_components(sea_settings(first.tp_s, first.hm0_m, seed)), level),
+      even(motion::draw_components(sea_settings(c.tp_s, c.hm0_m, seed + 1000)), level);
+  RunsAndRests result;
+  double end_s = kFirst_s;
+  for (int i = 0; i < runs; ++i) {
+    result.begins_s.push_back(end_s);
+    end_s += rest_s + (i % 2 == 0 ? first : c).duration_s;
+  }
+  c.duration_s = end_s;
+  result.record = recorded(c, seed, [=, begins_s = result.begins_s](std::int64_t utime) mutable {
+    const double t_s = static_cast<double>(utime) * kMicrosecond;
+    const auto next = std::upper_bound(begins_s.begin() + 1, begins_s.end(), t_s);
+    const double stops_s = (next == begins_s.end() ? end_s : *next) - rest_s - kRamp_s;
+    const Ramp up = ramp(t_s, *(next - 1), kRamp_s), down = ramp(t_s, stops_s, kRamp_s);
+    const Ramp r{up.w - down.w, up.dw - down.dw, up.ddw - down.ddw};
+    BodyMotion m = ((next - begins_s.begin()) % 2 == 1 ? odd : even).at(utime);
+    m.acceleration_N = r.w * m.acceleration_N + 2 * r.dw * m.velocity_N + r.ddw * m.position_N;
+    m.velocity_N = r.w * m.velocity_N + r.dw * m.position_N;
+    m.position_N *= r.w;
+    return m;
+  });
+  return result;
 }
 
 using estimator::square;
