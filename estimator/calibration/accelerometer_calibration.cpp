@@ -201,6 +201,9 @@ SensorCalibration calibration_from_json(const std::string& text, const std::stri
   c.accelerometer.b_mps2 = in.vector("/accelerometer/b_mps2");
   c.accelerometer.quadratic_pmps2 = in.vector("/accelerometer/quadratic_pmps2");
   in.matrix("/accelerometer/covariance", c.accelerometer.covariance);
+  if (!(c.accelerometer.covariance.diagonal().minCoeff() >= 0))
+    in.refuse("/accelerometer/covariance", c.accelerometer.covariance.diagonal().minCoeff(),
+              "variances of 0 or more on the diagonal");
   c.gyroscope.offset_radps = in.vector("/gyroscope/offset_radps");
   c.gyroscope.offset_sigma_radps = in.vector("/gyroscope/offset_sigma_radps");
   if (in.has("/compass")) c.compass = compass_of(in);

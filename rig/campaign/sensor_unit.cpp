@@ -57,21 +57,30 @@ estimator::SensorKnowledge sensor_knowledge(const CampaignSettings& campaign,
   const AccelerometerSettings& sheet = unit.accelerometer;
   const AgeingSettings age = campaign.sensor.aged ? AgeingSettings{} : AgeingSettings{0, 0, 0, 0};
   const Matrix3d M = calibration.accelerometer.sigma_M();
-  const double temperature_span_degC = std::abs(unit.temperature.amplitude_degC) + std::abs(unit.temperature.warm_up_degC);
-  const double scale_now = std::sqrt(M.diagonal().squaredNorm() / 3);
-  const double misalignment_now = std::sqrt((M.squaredNorm() - M.diagonal().squaredNorm()) / 6);
-  const double bias_now = std::sqrt(calibration.accelerometer.sigma_b_mps2().squaredNorm() / 3);
-  const double offset_now = std::sqrt(calibration.gyroscope.offset_sigma_radps.squaredNorm() / 3);
-
+  const double temperature_span_degC =
+      std::abs(unit.temperature.amplitude_degC) + std::abs(unit.temperature.warm_up_degC);
   estimator::SensorKnowledge known = campaign.estimator.sensor;
-  known.accel_bias_sigma_mps2 = std::hypot(
-      std::hypot(bias_now, sheet.instability_sigma_mps2, sheet.bias_drift_sigma_mps2pdegC * temperature_span_degC),
-      age.accel_bias_mps2);
+  // Zero: the calibration says nothing of it, as one by rotation of a gyroscope that never rested.
+  const auto rms = [](double squares, int of, double unsaid) {
+    return squares > 0 ? std::sqrt(squares / of) : unsaid;
+  };
+  const double scale_now = rms(M.diagonal().squaredNorm(), 3, known.accel_scale_sigma);
+  const double misalignment_now =
+      rms(M.squaredNorm() - M.diagonal().squaredNorm(), 6, known.accel_misalignment_sigma_rad);
+  const double bias_now =
+      rms(calibration.accelerometer.sigma_b_mps2().squaredNorm(), 3, known.accel_bias_sigma_mps2);
+  const double offset_now =
+      rms(calibration.gyroscope.offset_sigma_radps.squaredNorm(), 3, known.gyro_bias_sigma_radps);
+  known.accel_bias_sigma_mps2 =
+      std::hypot(std::hypot(bias_now, sheet.instability_sigma_mps2,
+                            sheet.bias_drift_sigma_mps2pdegC * temperature_span_degC),
+                 age.accel_bias_mps2);
   known.accel_scale_sigma =
       std::hypot(scale_now, sheet.scale_drift_sigma_pdegC * temperature_span_degC, age.accel_scale);
   known.accel_misalignment_sigma_rad = std::hypot(misalignment_now, age.accel_misalignment);
   known.accel_slope_sigma = slope_sigma(unit, calibration.accelerometer);
-  known.gyro_bias_sigma_radps = std::hypot(offset_now, unit.gyroscope.instability_sigma_radps, age.gyro_offset_radps);
+  known.gyro_bias_sigma_radps =
+      std::hypot(offset_now, unit.gyroscope.instability_sigma_radps, age.gyro_offset_radps);
   return known;
 }
 

@@ -75,7 +75,7 @@ std::string table_of(const estimator::SensorCalibration& calibration) {
 }
 
 int calibrate_accelerometer(const AccelerometerArguments& arguments) {
-  const auto samples = read_samples(arguments.recording);
+  const auto samples = all_of(uncalibrated_samples_of(arguments.recording));
   estimator::SensorCalibration calibration;
   try {
     calibration = arguments.way == kRotationWay ? by_rotation(samples, arguments)
@@ -107,7 +107,8 @@ int calibrate_compass(const CompassArguments& arguments) {
   if (!arguments.base.empty()) calibration = estimator::load_calibration(arguments.base);
   const estimator::AccelerometerCorrection correct(calibration.accelerometer);
   std::vector<Vector3d> raw_uT, f_B;
-  SampleSource source = samples_of(arguments.recording);
+  SampleSource source =
+      arguments.base.empty() ? samples_of(arguments.recording) : uncalibrated_samples_of(arguments.recording);
   for (estimator::ImuSample sample; source(sample);) {
     if ((sample.flags & flag::kNoMagnetometer) != 0 || !sample.m_B_uT.allFinite()) continue;
     if (!raw_uT.empty() && sample.m_B_uT == raw_uT.back()) continue;  // slower than the inertial sensors
@@ -116,7 +117,8 @@ int calibrate_compass(const CompassArguments& arguments) {
     f_B.push_back(correct(sample.f_B));
   }
   if (raw_uT.empty())
-    throw UserError(fmt::format("{}: no magnetic field while the unit turns; expected columns mx,my,mz", arguments.recording));
+    throw UserError(fmt::format("{}: no magnetic field while the unit turns; expected columns mx,my,mz",
+                                arguments.recording));
   try {
     const auto max_min = estimator::max_min_compass(raw_uT, f_B),
                ellipsoid = estimator::ellipsoid_compass(raw_uT, f_B);
@@ -154,7 +156,8 @@ void add_compass(CLI::App& command, Command& chosen) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand("calibrate", "A calibration file from a recording of a turned unit, or from a bench run");
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "A calibration file from a recording of a turned unit, or from a bench run");
   command->require_subcommand(1);
   auto arguments = std::make_shared<AccelerometerArguments>();
   CLI::App* accelerometer = command->add_subcommand(
@@ -186,8 +189,9 @@ void add_calibrate(CLI::App& app, Command& chosen) {
       [arguments, &chosen] { chosen = [arguments] { return calibrate_accelerometer(*arguments); }; });
   add_compass(*command, chosen);
   add_calibrate_front_end(*command, chosen);
-  command->footer("Examples:\n  waverig calibrate accelerometer six-sides.csv --out unit7.json\n"
-                  "  waverig calibrate front-end results/scale --out unit7-front-end.json");
+  command->footer(
+      "Examples:\n  waverig calibrate accelerometer six-sides.csv --out unit7.json\n"
+      "  waverig calibrate front-end results/scale --out unit7-front-end.json");
 }
 
 }  // namespace waverig::cli

@@ -17,6 +17,7 @@
 #include "estimator/method.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
+#include "rig/campaign/sensor_unit.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/recording.h"
 #include "rig/version.h"
@@ -136,13 +137,17 @@ void check_units(double mean_force_mps2, const EstimateArguments& arguments) {
 }
 
 int estimate(const EstimateArguments& arguments) {
-  SampleSource source = samples_of(arguments.input);
+  SampleSource source =
+      arguments.calibration.empty() ? samples_of(arguments.input) : uncalibrated_samples_of(arguments.input);
   estimator::MethodSettings settings;
   settings.sensor.gravity_mps2 = arguments.gravity_mps2;
   settings.compass.declination_rad = arguments.declination_deg * kDegree;
   if (!arguments.calibration.empty()) {
     const auto calibration = estimator::load_calibration(arguments.calibration);
     source = calibrated(std::move(source), calibration);
+    rig::CampaignSettings campaign;  // what no calibration tells, as the default campaign's sensor has it
+    campaign.estimator = settings;
+    settings.sensor = rig::sensor_knowledge(campaign, calibration);
     if (calibration.compass) settings.compass.calibration = calibration.compass->correction;
   }
   if (arguments.rest_s > 0) source = without_gyro_bias(std::move(source), arguments.rest_s, arguments.input);
@@ -205,8 +210,9 @@ void add_estimate(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_option(
       "--calibration", arguments->calibration,
-      "Calibration file to correct the samples by (waverig calibrate); without it they are taken "
-      "as calibrated");
+      "Calibration file (waverig calibrate): corrects the samples, which are taken as calibrated without it, "
+      "and says how uncertain that leaves them; what no calibration sees is as the default campaign's sensor "
+      "has it");
   command
       ->add_option("--rest-seconds", arguments->rest_s,
                    "The unit rests so long at the start: take the gyroscope's bias there")

@@ -11,6 +11,7 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/event_log.h"
+#include "lcmtypes/flags.h"
 
 namespace waverig::cli {
 
@@ -58,9 +59,22 @@ SampleSource samples_of(const fs::path& path) {
   return [reader](ImuSample& sample) { return reader->next(sample); };
 }
 
-std::vector<ImuSample> read_samples(const fs::path& path) {
+SampleSource uncalibrated_samples_of(const fs::path& path) {
+  SampleSource source = samples_of(path);
+  if (!is_event_log(path)) return source;
+  return [source = std::move(source), path](ImuSample& sample) {
+    if (!source(sample)) return false;
+    if ((sample.flags & flag::kUncalibrated) == 0)
+      throw UserError(fmt::format(
+          "{}: channel {}, time {}: the sample is calibrated already; expected samples flagged as "
+          "uncalibrated, to be calibrated once",
+          path.string(), channel::kImu, sample.utime));
+    return true;
+  };
+}
+
+std::vector<ImuSample> all_of(const SampleSource& source) {
   std::vector<ImuSample> samples;
-  const SampleSource source = samples_of(path);
   for (ImuSample sample; source(sample);) samples.push_back(sample);
   return samples;
 }

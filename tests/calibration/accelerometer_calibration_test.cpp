@@ -126,6 +126,13 @@ TEST(CalibrationFile, KeepsAnUnknownTemperatureUnknown) {
   EXPECT_TRUE(std::isnan(calibration_from_json(to_json(c), "x").temperature_degC));
 }
 
+TEST(CalibrationFile, RefusesAVarianceBelowZero) {
+  SensorCalibration c = full_calibration();
+  c.accelerometer.covariance(1, 1) = -1e-6;
+  EXPECT_NE(complaint(to_json(c)).find("/accelerometer/covariance = -1e-06: expected variances"), std::string::npos)
+      << complaint(to_json(c));
+}
+
 TEST(CalibrationFile, NamesFileAndKeyOfWhatIsWrong) {
   const std::string text = to_json(full_calibration());
   EXPECT_EQ(complaint(text), "");

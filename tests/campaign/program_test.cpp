@@ -2,9 +2,14 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <string>
+
+#include "estimator/calibration/accelerometer_calibration.h"
 
 #include "tests/campaign/temporary_directory.h"
 
@@ -174,6 +179,61 @@ TEST(Program, CalibratesAUnitLaidOnItsSixSides) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("0.250"), std::string::npos) << outcome.out;
   EXPECT_NE(bytes_of(temporary / "unit7.json").find("unit7"), std::string::npos);
+}
+
+// A wave of 4 s and a metre as a level unit feels it.
+std::string wave_record() {
+  std::string text = "utime,ax,ay,az,gx,gy,gz\n";
+  for (int row = 0; row < 12000; ++row)
+    text += std::to_string(row * 10000) + ",0,0," +
+            std::to_string(-9.80665 + 1.2337 * std::cos(2 * std::numbers::pi * row / 400)) + ",0,0,0\n";
+  return text;
+}
+
+double number_in(const std::string& json, const std::string& key) {
+  const std::size_t at = json.find("\"" + key + "\":");
+  return at == std::string::npos ? std::nan("") : std::stod(json.substr(at + key.size() + 3));
+}
+
+TEST(Program, StatesTheUncertaintyThatTheCalibrationFileLeaves) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  estimator::SensorCalibration calibration;
+  calibration.accelerometer.covariance.diagonal().head<12>().setConstant(1e-7);
+  calibration.gyroscope.offset_sigma_radps.setConstant(1e-4);
+  estimator::store_calibration(calibration, temporary / "good.json");
+  calibration.accelerometer.covariance *= 1e4;
+  estimator::store_calibration(calibration, temporary / "poor.json");
+  for (const std::string method : {"harmonic", "smoothed", "lee2014"}) {
+    const std::string call = "estimate wave.csv --method " + method + " --calibration ";
+    const Outcome good = run(temporary, call + "good.json --out " + method + "_good"),
+                  poor = run(temporary, call + "poor.json --out " + method + "_poor");
+    ASSERT_EQ(good.status, 0) << good.err;
+    ASSERT_EQ(poor.status, 0) << poor.err;
+    EXPECT_GT(number_in(poor.out, "expanded_uncertainty_m"), 1.5 * number_in(good.out, "expanded_uncertainty_m"))
+        << method << good.out << poor.out;
+  }
+}
+
+TEST(Program, CalibratesSamplesOfALogOnce) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  temporary.write("raw.toml", std::string(kTiny) + "[calibration]\nenabled = false\n");
+  estimator::store_calibration({}, temporary / "unit.json");
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out done").status, 0);
+  ASSERT_EQ(run(temporary, "sweep raw.toml --out raw").status, 0);
+  const std::string run_log = "/runs/T04.00s_H050.0cm_r1.lcm ";
+  for (const std::string& command : {"estimate done" + run_log + "--calibration unit.json --out x",
+                                    "calibrate accelerometer done" + run_log + "--out x",
+                                    "calibrate compass done" + run_log + "--base unit.json --out x"}) {
+    const Outcome twice = run(temporary, command);
+    EXPECT_EQ(twice.status, 2) << command;
+    EXPECT_NE(twice.err.find("calibrated already"), std::string::npos) << twice.err;
+    EXPECT_EQ(std::count(twice.err.begin(), twice.err.end(), '\n'), 1) << twice.err;
+    EXPECT_FALSE(std::filesystem::exists(temporary / "x/summary.json"));
+  }
+  const Outcome once = run(temporary, "estimate raw" + run_log + "--calibration unit.json --out once");
+  EXPECT_EQ(once.status, 0) << once.err;
 }
 
 TEST(Program, PlanSaysNoWithExitOneAndTheReason) {

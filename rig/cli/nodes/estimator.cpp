@@ -17,9 +17,9 @@ constexpr int kTick_ms = 50;
 estimator::MethodSettings method_settings(const EstimatorArguments& arguments) {
   if (!arguments.campaign.empty())
     return unit_on_the_rig(rig::read_campaign(arguments.campaign).settings, arguments.calibration).methods;
-  estimator::MethodSettings settings;
-  if (!arguments.calibration.empty())
-    settings.sensor.gravity_mps2 = estimator::load_calibration(arguments.calibration).gravity_mps2;
+  if (arguments.calibration.empty()) return {};
+  estimator::MethodSettings settings = unit_on_the_rig({}, arguments.calibration).methods;
+  settings.sensor.gravity_mps2 = estimator::load_calibration(arguments.calibration).gravity_mps2;
   return settings;
 }
 
