@@ -24,17 +24,23 @@ AtomicFile::~AtomicFile() {
   std::filesystem::remove(temporary_, ignored);
 }
 
-void AtomicFile::write(std::string_view text) { std::fwrite(text.data(), 1, text.size(), file_.get()); }
+void AtomicFile::write(std::string_view text) {
+  if (error_ == 0 && std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) error_ = errno;
+}
+
+void AtomicFile::flush() {
+  if (error_ == 0 && (std::fflush(file_.get()) != 0 || ::fsync(::fileno(file_.get())) != 0)) error_ = errno;
+  if (error_ != 0)
+    throw std::runtime_error(
+        fmt::format("{}: not everything could be written: {}", path_.string(), std::strerror(error_)));
+}
 
 void AtomicFile::commit() {
-  const auto failed = [&] {
-    return std::runtime_error(
-        fmt::format("{}: not everything could be written: {}", path_.string(), std::strerror(errno)));
-  };
-  if (std::ferror(file_.get()) != 0 || std::fflush(file_.get()) != 0 || ::fsync(::fileno(file_.get())) != 0)
-    throw failed();
-  std::filesystem::rename(temporary_, path_);
-  if (std::fclose(file_.release()) != 0) throw failed();
+  flush();
+  std::error_code error;
+  std::filesystem::rename(temporary_, path_, error);
+  if (error) throw UserError(fmt::format("{}: cannot be written: {}", path_.string(), error.message()));
+  file_.reset();
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view text) {

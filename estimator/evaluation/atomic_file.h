@@ -16,7 +16,9 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view text);
-  // Throws std::runtime_error where the disk did not take everything.
+  // Throws std::runtime_error where the disk did not take everything. Files that belong together are all
+  // flushed before the first is committed: what stood there stays until the disk has the whole of the new.
+  void flush();
   void commit();
 
  private:
@@ -25,6 +27,7 @@ class AtomicFile {
   };
   std::filesystem::path path_, temporary_;
   std::unique_ptr<std::FILE, Closer> file_;
+  int error_ = 0;  // errno of the first write that failed
 };
 
 void write_atomically(const std::filesystem::path& path, std::string_view text);

@@ -41,7 +41,8 @@ std::string shown(std::string_view text) {
 void CsvReader::Closer::operator()(gzFile_s* file) const { gzclose_r(file); }
 
 CsvReader::CsvReader(const std::filesystem::path& path) : path_(path), buffer_(kBlock) {
-  if (std::filesystem::is_directory(path))
+  std::error_code ignored;  // what may not be looked at fails to open below
+  if (std::filesystem::is_directory(path, ignored))
     throw UserError(fmt::format("{}: is a folder; expected a CSV file", name()));
   file_.reset(gzopen(path.c_str(), "rb"));
   if (!file_) throw UserError(fmt::format("{}: cannot be read: {}", name(), std::strerror(errno)));

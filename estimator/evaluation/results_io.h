@@ -1,7 +1,7 @@
 // Results of a campaign on disk: results.csv for people and spreadsheets, results.json with everything.
 //
 // Both are written whole or not at all, results.json last: a folder without it, or with "complete": false, is
-// not finished, and nothing here takes it for one.
+// not finished, and nothing here takes it for one. Where the disk fills, what stood there before stays.
 #pragma once
 #include <cstdio>
 #include <filesystem>

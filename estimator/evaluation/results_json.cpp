@@ -43,10 +43,11 @@ class JsonFile {
     first_ = false;
   }
   void end_array() { file_.write("\n ]"); }
-  void commit() {
+  void flush() {
     file_.write("\n}\n");
-    file_.commit();
+    file_.flush();
   }
+  void commit() { file_.commit(); }
 
  private:
   AtomicFile file_;
@@ -70,11 +71,22 @@ Json parsed(const std::filesystem::path& path) {
   }
 }
 
-void write_cells(JsonFile& file, const std::filesystem::path& directory, std::span<const CellResult> cells) {
-  write_atomically(directory / "results.csv", results_csv(cells));
+// Both files of head and its cells. each_run calls its argument with the line of every run.
+template <class EachRun>
+void write_files(const std::filesystem::path& directory, const CampaignResults& head, EachRun each_run) {
+  AtomicFile table(directory / "results.csv");
+  table.write(results_csv(head.cells));
+  JsonFile file(directory / "results.json", head);
   file.begin_array("cells");
-  for (const CellResult& cell : cells) file.element(line_of(cell));
+  for (const CellResult& cell : head.cells) file.element(line_of(cell));
   file.end_array();
+  file.begin_array("runs");
+  each_run([&file](std::string_view line) { file.element(line); });
+  file.end_array();
+  table.flush();
+  file.flush();
+  table.commit();
+  file.commit();
 }
 
 }  // namespace
@@ -139,31 +151,29 @@ CampaignResults ResultsWriter::finish(CampaignResults head, std::size_t waves_in
     head.runs.push_back(std::move(run));
   }
   head.cells = pooling.finish();
-  JsonFile file(directory_ / "results.json", head);
-  write_cells(file, directory_, head.cells);
-  file.begin_array("runs");
-  for (const Entry& entry : entries_) {
-    read(entry);
-    file.element(line);
-  }
-  file.end_array();
-  file.commit();
+  write_files(directory_, head, [&](auto take) {
+    for (const Entry& entry : entries_) {
+      read(entry);
+      take(line);
+    }
+  });
   return head;
 }
 
 void write_results(const std::filesystem::path& directory, const CampaignResults& results) {
-  std::filesystem::remove(directory / "results.json");
-  JsonFile file(directory / "results.json", results);
-  write_cells(file, directory, results.cells);
-  file.begin_array("runs");
-  for (const RunResult& run : results.runs) file.element(line_of(run));
-  file.end_array();
-  file.commit();
+  write_files(directory, results, [&](auto take) {
+    for (const RunResult& run : results.runs) take(line_of(run));
+  });
 }
 
 void invalidate_results(const std::filesystem::path& directory) {
-  std::filesystem::remove(directory / "results.json");
-  std::filesystem::remove(directory / "results.csv");
+  for (const char* file : {"results.json", "results.csv"}) {
+    std::error_code error;
+    std::filesystem::remove(directory / file, error);
+    if (error)
+      throw UserError(fmt::format("{}: cannot be written: {}; expected a writable directory",
+                                  (directory / file).string(), error.message()));
+  }
 }
 
 CampaignResults read_results(const std::filesystem::path& directory) {

@@ -20,16 +20,18 @@ double combined_sigma_m(const estimator::Wave& wave) {
   return known ? std::sqrt(variance) : estimator::kUnknown;
 }
 
-void write_waves_csv(const std::filesystem::path& path, std::span<const estimator::Wave> waves) {
-  AtomicFile file(path);
-  file.write("start_utime,period_s,height_cm,sigma_cm\n");
+std::string waves_csv(std::span<const estimator::Wave> waves) {
+  std::string text = "start_utime,period_s,height_cm,sigma_cm\n";
   for (const estimator::Wave& wave : waves) {
     const double sigma_m = combined_sigma_m(wave);
-    file.write(
-        fmt::format("{},{:.4f},{:.4f},", wave.start_utime, wave.period_s, wave.height_m / kCentimetre));
-    file.write(std::isnan(sigma_m) ? std::string("\n") : fmt::format("{:.4f}\n", sigma_m / kCentimetre));
+    text += fmt::format("{},{:.4f},{:.4f},", wave.start_utime, wave.period_s, wave.height_m / kCentimetre);
+    text += std::isnan(sigma_m) ? std::string("\n") : fmt::format("{:.4f}\n", sigma_m / kCentimetre);
   }
-  file.commit();
+  return text;
+}
+
+void write_waves_csv(const std::filesystem::path& path, std::span<const estimator::Wave> waves) {
+  write_atomically(path, waves_csv(waves));
 }
 
 }  // namespace waverig::evaluation

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "estimator/types.h"
 
@@ -11,6 +12,7 @@ namespace waverig::evaluation {
 // known.
 double combined_sigma_m(const estimator::Wave& wave);
 
+std::string waves_csv(std::span<const estimator::Wave> waves);
 void write_waves_csv(const std::filesystem::path& path, std::span<const estimator::Wave> waves);
 
 }  // namespace waverig::evaluation

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/heave_against_truth.h"
 #include "estimator/evaluation/heave_csv.h"
 #include "estimator/evaluation/heave_spectrum.h"
@@ -61,13 +62,18 @@ int evaluate_heave(const EvaluateArguments& arguments) {
     summary.heave_lag_s = comparison.lag_s();
   }
   make_directory(arguments.out);
-  fs::remove(fs::path(arguments.out) / "summary.json");
+  evaluation::AtomicFile waves_file(fs::path(arguments.out) / "waves.csv"),
+      summary_file(fs::path(arguments.out) / "summary.json");
+  waves_file.write(evaluation::waves_csv(waves));
+  waves_file.flush();
+  summary_file.write(evaluation::to_json(summary));
+  summary_file.flush();
   if (arguments.netcdf)
     evaluation::write_netcdf(
         fs::path(arguments.out) / "record.nc",
         {heave, waves, spectrum, summary, std::string("waverig ") + kVersion, "Heave of " + arguments.input});
-  evaluation::write_waves_csv(fs::path(arguments.out) / "waves.csv", waves);
-  evaluation::write_summary(fs::path(arguments.out) / "summary.json", summary);
+  waves_file.commit();
+  summary_file.commit();
   fmt::print("{}", evaluation::to_json(summary));
   return 0;
 }
@@ -121,9 +127,9 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
   const auto others = other_methods(arguments.others);
   evaluation::CampaignResults results = evaluation::read_results(directory);
   std::vector<fs::path> logs;
-  if (fs::is_directory(directory / "runs"))
-    for (const auto& entry : fs::directory_iterator(directory / "runs"))
-      if (entry.path().extension() == ".lcm") logs.push_back(entry.path());
+  std::error_code error;  // of a folder that is not there or may not be read: no logs
+  for (const auto& entry : fs::directory_iterator(directory / "runs", error))
+    if (entry.path().extension() == ".lcm") logs.push_back(entry.path());
   if (logs.empty())
     throw UserError(fmt::format("{}: no runs/*.lcm; expected the logs of a campaign", arguments.input));
   std::sort(logs.begin(), logs.end());
@@ -144,7 +150,9 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
 }
 
 int evaluate(const EvaluateArguments& arguments) {
-  return fs::is_directory(arguments.input) ? evaluate_campaign(arguments) : evaluate_heave(arguments);
+  std::error_code ignored;  // what may not be looked at is refused where it is opened
+  return fs::is_directory(arguments.input, ignored) ? evaluate_campaign(arguments)
+                                                    : evaluate_heave(arguments);
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <cmath>
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "estimator/evaluation/atomic_file.h"
@@ -217,6 +220,60 @@ TEST(AtomicFile, ShowsNothingBeforeTheCommitAndKeepsTheOldFileOnFailure) {
   write_atomically(path, "new");
   EXPECT_EQ(Scratch::read(path), "new");
   EXPECT_THROW(write_atomically(scratch.path() / "no" / "such" / "folder", "x"), UserError);
+}
+
+// As on a full disk: the system takes no more than so many bytes of a file.
+class LimitedFiles {
+ public:
+  explicit LimitedFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~LimitedFiles() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  LimitedFiles(const LimitedFiles&) = delete;
+  LimitedFiles& operator=(const LimitedFiles&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST(Results, ThatStandAreKeptWhereTheDiskTakesNoMore) {
+  const Scratch scratch;
+  CampaignResults c = campaign();
+  write_results(scratch.path(), c);
+  const std::string json = Scratch::read(scratch.path() / "results.json"),
+                    csv = Scratch::read(scratch.path() / "results.csv");
+  c.cells[0].method = "another";
+  for (const std::size_t bytes : {csv.size() / 2, csv.size() + 100}) {  // not even the table; the table alone
+    {
+      const LimitedFiles full(bytes);
+      EXPECT_THROW(write_results(scratch.path(), c), std::runtime_error);
+    }
+    EXPECT_EQ(Scratch::read(scratch.path() / "results.json"), json);
+    EXPECT_EQ(Scratch::read(scratch.path() / "results.csv"), csv);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.path()), {}), 2) << "and no temporaries";
+}
+
+// A folder that is there but not ours: one sentence, not what the library says of it.
+TEST(Results, OfAFolderThatMayNotBeWrittenAreRefused) {
+  const Scratch scratch;
+  write_results(scratch.path(), campaign());
+  std::filesystem::permissions(scratch.path(), std::filesystem::perms{0555});
+  const bool root = ::geteuid() == 0;
+  const auto become = [root](uid_t user) { return !root || ::seteuid(user) == 0; };
+  ASSERT_TRUE(become(65534));  // nobody
+  EXPECT_THROW(write_results(scratch.path(), campaign()), UserError);
+  EXPECT_THROW(invalidate_results(scratch.path()), UserError);
+  EXPECT_THROW(ResultsWriter(scratch.path()), UserError);
+  ASSERT_TRUE(become(0));
+  std::filesystem::permissions(scratch.path(), std::filesystem::perms{0755});
+  EXPECT_NO_THROW(read_results(scratch.path()));
 }
 
 TEST(Summary, HoldsTheAgreedKeysAndLeavesOutWhatIsUnknown) {
