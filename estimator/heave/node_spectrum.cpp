@@ -77,6 +77,8 @@ SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, do
 
   SeaAndNoise split;
   split.first_bin = std::max(first - 1, resolved);
+  split.found = first < bins - 1;
+  split.cut_off = first == resolved + 1;
   split.noise_m2ps3 = assumed_noise_m2ps3;
   if (sees_noise && resolved < split.first_bin)
     split.noise_m2ps3 = plausible(raw.segment(resolved, split.first_bin - resolved).mean());

@@ -44,6 +44,8 @@ struct SeaAndNoise {
   Eigen::VectorXd heave_density_m2s;  // Z, zero below the sea's lowest frequency
   double noise_m2ps3 = 0;             // q, two-sided
   Eigen::Index first_bin = 0;         // of the sea
+  bool found = false;                 // something stands out
+  bool cut_off = false;               // and does so at the lowest frequency that the blocks resolve
 };
 
 // q is found where there is no sea: below the lowest frequency whose power stands out. Below lowest_hz the

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "estimator/heave/node_spectrum.h"
 #include "estimator/heave/wave_counter.h"
@@ -13,10 +14,12 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kSpectrumInterval_s = 0.125;
-constexpr int kLongestBlock = 2048;  // 256 s
-constexpr int kShortestBlock = 64;   // 8 s
-constexpr int kOverlap = 4;          // blocks begin every quarter of their length
-constexpr int kPadding = 4;          // of a block, for the peak between its frequencies
+constexpr int kLongestBlock = 2048;      // 256 s
+constexpr int kShortestBlock = 64;       // 8 s
+constexpr int kOverlap = 4;              // blocks begin every quarter of their length
+constexpr int kPadding = 4;              // of a block, for the peak between its frequencies
+constexpr int kSeveral = 3;              // blocks are better than a long one
+constexpr double kLowestResolved = 2.5;  // waves in a block
 constexpr double kFewWaves = 20;
 
 // The nodes of one piece without a gap: second differences of the path, and smoothed heave and rate beside
@@ -51,16 +54,17 @@ std::vector<Nodes> nodes_of(const Record& record, const SmoothedRecord& smoothed
   return pieces;
 }
 
-// Density of the second differences by Welch's method, and mean squares of smoothed heave and rate over the
+// Density of one of the nodes' series by Welch's method, and mean squares of smoothed heave and rate over the
 // whole record as multiples of those under the windows.
 struct BlockAverage {
   Eigen::VectorXd density;
   Eigen::VectorXd fine_density;  // the same at kPadding times as many frequencies
   int blocks = 0;
-  double heave_ratio = 1, rate_ratio = 1, mean_square_heave_m2 = 0;
+  double heave_ratio = 1, rate_ratio = 1;
 };
 
-BlockAverage average_blocks(const std::vector<Nodes>& pieces, int block, double interval_s) {
+BlockAverage average_blocks(const std::vector<Nodes>& pieces, std::vector<double> Nodes::*series, int block,
+                            double interval_s) {
   BlockAverage average{Eigen::VectorXd::Zero(block / 2 + 1), Eigen::VectorXd::Zero(kPadding * block / 2 + 1)};
   Periodogram periodogram(block), fine_periodogram(kPadding * block);
   const auto length = static_cast<std::size_t>(block);
@@ -75,7 +79,7 @@ BlockAverage average_blocks(const std::vector<Nodes>& pieces, int block, double 
     const std::size_t count = 1 + (n - length + length / kOverlap - 1) / (length / kOverlap);
     for (std::size_t b = 0; b < count; ++b) {
       const std::size_t first = count > 1 ? b * (n - length) / (count - 1) : 0;
-      const auto values = std::span(nodes.second_difference_m).subspan(first, length);
+      const auto values = std::span(nodes.*series).subspan(first, length);
       average.density += periodogram.of(values, interval_s);
       average.fine_density += fine_periodogram.of(values, interval_s);
       ++average.blocks;
@@ -90,57 +94,99 @@ BlockAverage average_blocks(const std::vector<Nodes>& pieces, int block, double 
   if (average.blocks == 0) return average;
   average.density /= average.blocks;
   average.fine_density /= average.blocks;
-  average.mean_square_heave_m2 = all_z / all;
   if (windowed_z > 0) average.heave_ratio = all_z / all / (windowed_z / windowed);
   if (windowed_v > 0) average.rate_ratio = all_v / all / (windowed_v / windowed);
   return average;
 }
 
-// A block has to fit the longest piece; several of them are better than a long one.
-int block_length(const std::vector<Nodes>& pieces) {
+// A block has to fit the longest piece `times` over.
+int block_length(const std::vector<Nodes>& pieces, int times) {
   std::size_t longest = 0;
   for (const Nodes& nodes : pieces) longest = std::max(longest, nodes.heave_m.size());
   int block = kLongestBlock;
-  while (block > kShortestBlock && static_cast<std::size_t>(3 * block) > longest) block /= 2;
+  while (block > kShortestBlock && static_cast<std::size_t>(times * block) > longest) block /= 2;
   return block;
 }
 
-// The Hann window smears a density over a band of mean square width 1 / (3 L^2), L the block's length, and
-// f^(n-4) is curved: on average (n-4)(n-5) / (6 L^2 f^2) of m_n is too much.
-double smearing(int n, double f_hz, double block_s) {
-  return (n - 4) * (n - 5) / (6 * square(block_s * f_hz));
+// Density of heave, and what the blocks have seen of it.
+struct SeaSpectrum {
+  Eigen::VectorXd density_m2s, fine_density_m2s;
+  Eigen::Index first_bin = 1;
+  int power = 0;  // of frequency by which the blocks' density was divided
+  double block_s = 0, heave_ratio = 1, rate_ratio = 1;
+};
+
+// Of the levelled acceleration; of the smoothed heave where the sea's longest waves are too long for blocks
+// that the record holds several of: nothing there is divided by w^4, so that no window's skirt grows. Nothing
+// where no sea is found, or the record is shorter than a block.
+std::optional<SeaSpectrum> sea_spectrum(const std::vector<Nodes>& pieces, double interval_s,
+                                        double nominal_noise_m2ps3) {
+  const auto split = [&](const BlockAverage& average, int block) {
+    return split_sea_from_noise(average.density, interval_s, nominal_noise_m2ps3,
+                                kLowestResolved / (interval_s * block));
+  };
+  int block = block_length(pieces, kSeveral);
+  BlockAverage average = average_blocks(pieces, &Nodes::second_difference_m, block, interval_s);
+  if (average.blocks == 0) return std::nullopt;
+  SeaSpectrum sea;
+  const SeaAndNoise seen = split(average, block);
+  if (seen.found && !seen.cut_off) {
+    sea.density_m2s = seen.heave_density_m2s;
+    sea.first_bin = seen.first_bin;
+    sea.power = 4;
+    sea.fine_density_m2s = average.fine_density;
+    const double step = std::numbers::pi / static_cast<double>(sea.fine_density_m2s.size() - 1);
+    for (Eigen::Index i = 1; i < sea.fine_density_m2s.size(); ++i)
+      sea.fine_density_m2s[i] /= square(2 - 2 * std::cos(step * static_cast<double>(i)));
+  } else {
+    block = block_length(pieces, 1);
+    if (!seen.found &&
+        !split(average_blocks(pieces, &Nodes::second_difference_m, block, interval_s), block).found)
+      return std::nullopt;
+    average = average_blocks(pieces, &Nodes::heave_m, block, interval_s);
+    sea.density_m2s = average.density;
+    sea.fine_density_m2s = average.fine_density;
+  }
+  sea.block_s = interval_s * block;
+  sea.heave_ratio = average.heave_ratio;
+  sea.rate_ratio = average.rate_ratio;
+  return sea;
 }
+
+// The Hann window smears a density over a band of mean square width 1 / (3 L^2), L the block's length, and
+// f^(n-p), p the power that the density was divided by, is curved: on average (n-p)(n-p-1) / (6 L^2 f^2) of
+// m_n is too much.
+double smearing(int n, double cycles_a_block) { return n * (n - 1) / (6 * square(cycles_a_block)); }
 
 // The centroid of Z^4 (Young 1995), from the sea's lowest frequency on.
-double peak_period_s(const Eigen::VectorXd& fine_density, Eigen::Index first, double interval_s) {
-  const double step = std::numbers::pi / static_cast<double>(fine_density.size() - 1);
-  double peak = 0, peak_w = 0;
-  for (Eigen::Index i = first; i < fine_density.size(); ++i) {
-    const double w = step * static_cast<double>(i), z = fine_density[i] / square(2 - 2 * std::cos(w));
-    peak += std::pow(z, 4);
-    peak_w += std::pow(z, 4) * w;
+double peak_period_s(const SeaSpectrum& sea) {
+  double peak = 0, peak_f = 0;
+  for (Eigen::Index i = kPadding * sea.first_bin; i < sea.fine_density_m2s.size(); ++i) {
+    const double z4 = std::pow(sea.fine_density_m2s[i], 4);
+    peak += z4;
+    peak_f += z4 * static_cast<double>(i) / (kPadding * sea.block_s);
   }
-  return 2 * std::numbers::pi * interval_s * peak / peak_w;
+  return peak / peak_f;
 }
 
-void set_moments(const SeaAndNoise& split, double interval_s, int block, const BlockAverage& average,
-                 SeaState& sea) {
-  const double block_s = interval_s * block;
+void set_moments(const SeaSpectrum& spectrum, SeaState& sea) {
   double m[4] = {};  // m_-1, m_0, m_1, m_2
-  for (Eigen::Index i = split.first_bin; i < split.heave_density_m2s.size(); ++i) {
-    const double f = static_cast<double>(i) / block_s, z = 2 / block_s * split.heave_density_m2s[i];
+  for (Eigen::Index i = spectrum.first_bin; i < spectrum.density_m2s.size(); ++i) {
+    const auto cycles = static_cast<double>(i);
+    const double z = 2 / spectrum.block_s * spectrum.density_m2s[i];
     for (int n = -1; n <= 2; ++n)
-      m[n + 1] += z * std::pow(f, n) * (1 - std::min(smearing(n, f, block_s), 1.0));
+      m[n + 1] += z * std::pow(cycles / spectrum.block_s, n) *
+                  (1 - std::min(smearing(n - spectrum.power, cycles), 1.0));
   }
   if (!(m[1] > 0)) return;
   // Heave's ratio goes with f^0 and its rate's with f^2; the others lie on the same power of frequency.
-  const double per_f = std::sqrt(average.rate_ratio / average.heave_ratio);
-  for (int n = 0; n < 4; ++n) m[n] *= average.heave_ratio * std::pow(per_f, n - 1);
+  const double per_f = std::sqrt(spectrum.rate_ratio / spectrum.heave_ratio);
+  for (int n = 0; n < 4; ++n) m[n] *= spectrum.heave_ratio * std::pow(per_f, n - 1);
   sea.hm0_m = 4 * std::sqrt(m[1]);
   sea.tm_10_s = m[0] / m[1];
   sea.tm01_s = m[1] / m[2];
   sea.tm02_s = std::sqrt(m[1] / m[3]);
-  sea.tp_s = peak_period_s(average.fine_density, kPadding * split.first_bin, interval_s);
+  sea.tp_s = peak_period_s(spectrum);
 }
 
 // Mean of the highest n-th part of the waves, the last of them with the fraction that is left.
@@ -184,14 +230,10 @@ SeaState sea_state(const Record& record, const SmoothedRecord& smoothed, const S
   const double usual_s = sea.duration_s / static_cast<double>(record.samples().size());
   const double interval_s = std::max(kSpectrumInterval_s, usual_s);
   const std::vector<Nodes> pieces = nodes_of(record, smoothed, interval_s);
-  const int block = block_length(pieces);
-  const BlockAverage average = average_blocks(pieces, block, interval_s);
   sea.flags = flag::kTooFewWaves;
-  if (average.blocks == 0) return sea;
-  const double nominal =
-      square(attitude_settings(sensor).accel_noise_mps2_rthz) / 2;  // one-sided to two-sided
-  set_moments(split_sea_from_noise(average.density, interval_s, nominal, 2.5 / (interval_s * block)),
-              interval_s, block, average, sea);
+  const auto spectrum = sea_spectrum(pieces, interval_s, accel_noise_m2ps3(sensor));
+  if (!spectrum) return sea;
+  set_moments(*spectrum, sea);
   if (sea.duration_s > kFewWaves * sea.tm02_s) sea.flags = 0;
   sea.hm0_sigma_m = hm0_sigma(smoothed, sensor, sea);
   return sea;

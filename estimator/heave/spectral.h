@@ -6,7 +6,9 @@
 // sqrt(m0/m2), Tm-10 = m_-1/m0; Tp by the centroid of Z^4 (Young 1995). Windows weigh the record's ends less
 // than its middle, and a sea's variance wanders by several percent within a record: so the moments are scaled
 // by what the smoothed heave and its rate have over the whole record against what they have under the
-// windows' weight. H1/3, H1/10, Hmax: zero-up-crossing waves of the smoothed heave.
+// windows' weight. Where a record is too short for several blocks that resolve its longest waves, the density
+// is that of the smoothed heave in the longest block that fits. H1/3, H1/10, Hmax: zero-up-crossing waves of
+// the smoothed heave.
 #pragma once
 #include "estimator/heave/record_smoother.h"
 #include "estimator/method.h"

@@ -1,5 +1,6 @@
 #include "estimator/heave/spectral.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "lcmtypes/flags.h"
@@ -81,6 +82,37 @@ TEST(Spectral, OfARegularWaveGivesItsHeightAndPeriod) {
   EXPECT_NEAR(sea.tp_s, 6, 0.03);
   EXPECT_NEAR(sea.tm02_s, 6, 0.05);
   EXPECT_NEAR(sea.hmax_m, 1, 0.01);
+}
+
+// A minute or two hold no several blocks that resolve the waves: nothing may be lost for that.
+TEST(Spectral, OfAShortRecordGivesItsOwnHm0AndTm02) {
+  for (const double duration_s : {60.0, 120.0, 300.0})
+    for (const auto& [tp, hm0] : {std::pair{3.0, 0.3}, {4.0, 0.5}, {6.0, 1.0}, {9.0, 2.0}, {12.0, 3.0}})
+      for (const std::uint64_t seed : {1, 2}) {
+        const SeaRecord record = sea_record({.tp_s = tp, .hm0_m = hm0, .duration_s = duration_s}, seed);
+        const OwnTruth truth = own_truth(record);
+        const estimator::SeaState sea = run_spectral(record.samples);
+        const std::string what = fmt::format("{} s of Tp {} s, seed {}", duration_s, tp, seed);
+        EXPECT_NEAR(sea.hm0_m / truth.hm0_m, 1, 0.015) << what;
+        EXPECT_LT(std::abs(sea.hm0_m - truth.hm0_m), 3 * sea.hm0_sigma_m) << what;
+        EXPECT_NEAR(sea.tm02_s / truth.tm02_s, 1, 0.015) << what;
+        EXPECT_GT(sea.tm_10_s, sea.tm01_s) << what;
+        EXPECT_GT(sea.tm01_s, sea.tm02_s) << what;
+        EXPECT_EQ((sea.flags & flag::kTooFewWaves) != 0, duration_s < 20 * truth.tm02_s) << what;
+      }
+}
+
+TEST(Spectral, OfAMinuteOfASwellGivesItsHeightAndPeriod) {
+  for (const double period_s : {6.0, 12.0, 14.0}) {
+    SyntheticWaves waves;
+    waves.period_s = period_s;
+    waves.height_m = 1;
+    waves.duration_s = 60;
+    const estimator::SeaState sea = run_spectral(synthesize(waves, SensorErrors{}, 1).samples);
+    EXPECT_NEAR(sea.hm0_m, std::sqrt(2.0), 0.02) << period_s << " s";
+    EXPECT_NEAR(sea.tp_s / period_s, 1, 0.02) << period_s << " s";
+    EXPECT_NEAR(sea.tm02_s / period_s, 1, 0.03) << period_s << " s";
+  }
 }
 
 TEST(Spectral, SaysWhenThereIsTooLittle) {
