@@ -71,6 +71,8 @@ CampaignResults merged(std::span<const fs::path> shards) {
       throw differs(shards.front(), shard, "seed", std::to_string(all.seed), std::to_string(part.seed));
     if (part.version != all.version)
       throw differs(shards.front(), shard, "version", all.version, part.version);
+    if (part.judged_version != all.judged_version)
+      throw differs(shards.front(), shard, "version that judged", all.judged_version, part.judged_version);
     if (part.calibration_json != all.calibration_json)
       throw UserError(fmt::format("{} and {}: calibration differs; expected shards of one campaign",
                                   shards.front().string(), shard.string()));

@@ -96,6 +96,7 @@ struct CampaignResults {
   std::string name;
   std::string version;        // of waverig
   std::string command;        // as given
+  std::string judged_version, judged_command;  // of a later waverig evaluate; empty where the campaign judged itself
   std::uint64_t seed = 0;
   bool complete = false;
   std::vector<CellResult> cells;   // by period, height, method

@@ -33,6 +33,9 @@ class Writer {
   void known(const char* key, double value) {
     if (std::isfinite(value)) json_[key] = value;
   }
+  void known(const char* key, const std::string& value) {
+    if (!value.empty()) json_[key] = value;
+  }
   void operator()(const char* key, char value) { json_[key] = std::string(1, value); }
   template <std::integral Integer>
   void operator()(const char* key, Integer value) {
@@ -72,6 +75,10 @@ class Reader {
     value = j.is_null() ? estimator::kUnknown : j.get<double>();
   }
   void known(const char* key, double& value) { (*this)(key, value); }
+  void known(const char* key, std::string& value) {
+    value.clear();
+    if (json_.contains(key)) (*this)(key, value);
+  }
   void operator()(const char* key, std::string& value) {
     const Json& j = at(key);
     if (!j.is_string()) throw wrong(key, "a string");
@@ -223,6 +230,8 @@ void head_fields(auto& a, Is<CampaignResults> auto& r) {
   a("name", r.name);
   a("version", r.version);
   a("command", r.command);
+  a.known("judged_version", r.judged_version);
+  a.known("judged_command", r.judged_command);
   a("seed", r.seed);
   a("complete", r.complete);
 }

@@ -35,6 +35,7 @@ struct EvaluateArguments {
   evaluation::AgainstTruthSettings against;
   evaluation::ZeroCrossingSettings waves;
   bool netcdf = false;
+  std::vector<const CLI::Option*> of_heave, of_campaign;  // options that only one kind of input knows
 };
 
 void make_directory(const std::string& out) {
@@ -79,22 +80,32 @@ int evaluate_heave(const EvaluateArguments& arguments) {
 }
 
 std::map<std::string, fs::path> other_methods(const std::vector<std::string>& others) {
+  constexpr const char* kOfAName =  // as on the bus
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-";
   std::map<std::string, fs::path> methods;
   for (const std::string& other : others) {
     const std::size_t sign = other.find('=');
-    if (sign == std::string::npos || sign == 0 || !fs::is_directory(other.substr(sign + 1)))
+    std::error_code ignored;
+    if (sign == std::string::npos || !fs::is_directory(other.substr(sign + 1), ignored))
       throw UserError(
           fmt::format("--heave {}: expected NAME=DIR, where DIR holds a heave CSV for each run", other));
-    methods[other.substr(0, sign)] = other.substr(sign + 1);
+    const std::string name = other.substr(0, sign);
+    if (name.empty() || name.find_first_not_of(kOfAName) != std::string::npos)
+      throw UserError(
+          fmt::format("--heave {}: name '{}'; expected letters, digits, '_', '.' and '-'", other, name));
+    if (!methods.emplace(name, other.substr(sign + 1)).second)
+      throw UserError(fmt::format("--heave {}: '{}' is given twice; expected a name each", other, name));
   }
   return methods;
 }
 
 // Heave of someone else's program for this run joins those of the log.
 void add_other_heave(evaluation::RunRecord& record, const std::string& method, const fs::path& directory) {
+  if (record.heave.contains(method) || record.waves.contains(method) || record.seas.contains(method))
+    throw UserError(fmt::format("--heave {}={}: run {} has a method of that name; expected another name",
+                                method, directory.string(), record.run));
   const evaluation::HeaveSeries series = evaluation::read_heave_csv(directory / (record.run + ".csv"));
   auto& heave = record.heave[method];
-  heave.clear();
   for (std::size_t i = 0; i < series.utime.size(); ++i) {
     estimator::HeaveSample sample;
     sample.utime = series.utime[i];
@@ -102,7 +113,6 @@ void add_other_heave(evaluation::RunRecord& record, const std::string& method, c
     sample.heave_sigma_m = series.heave_sigma_m[i];
     heave.push_back(sample);
   }
-  record.waves.erase(method);
 }
 
 // The sensor's rate and noise and the bounds of its sea, as far as log and earlier results tell them.
@@ -119,6 +129,12 @@ evaluation::JudgeSettings judge_settings(const evaluation::RunRecord& record,
       settings.heave_bound_m[run.method] = run.heave_bound_m;
     }
   return settings;
+}
+
+std::string command_of(const EvaluateArguments& arguments) {
+  std::string command = "waverig evaluate " + arguments.input;
+  for (const std::string& other : arguments.others) command += " --heave " + other;
+  return arguments.out.empty() ? command : command + " --out " + arguments.out;
 }
 
 int evaluate_campaign(const EvaluateArguments& arguments) {
@@ -143,6 +159,8 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
   }
   results.runs = std::move(judged);
   results.cells = evaluation::cells_of(results.runs);
+  results.judged_version = kVersion;
+  results.judged_command = command_of(arguments);
   make_directory(out.string());
   evaluation::write_results(out, results);
   fmt::print("{}", evaluation::results_csv(results.cells));
@@ -151,8 +169,13 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
 
 int evaluate(const EvaluateArguments& arguments) {
   std::error_code ignored;  // what may not be looked at is refused where it is opened
-  return fs::is_directory(arguments.input, ignored) ? evaluate_campaign(arguments)
-                                                    : evaluate_heave(arguments);
+  const bool campaign = fs::is_directory(arguments.input, ignored);
+  for (const CLI::Option* option : campaign ? arguments.of_heave : arguments.of_campaign)
+    if (option->count() > 0)
+      throw UserError(fmt::format("{}: {} is {} directory; expected {}", option->get_name(), arguments.input,
+                                  campaign ? "a" : "no",
+                                  campaign ? "a heave CSV with it" : "a results directory with it"));
+  return campaign ? evaluate_campaign(arguments) : evaluate_heave(arguments);
 }
 
 }  // namespace
@@ -165,22 +188,29 @@ void add_evaluate(CLI::App& app, Command& chosen) {
                    "Results directory, or heave CSV (utime,heave_m[,heave_sigma_m]), plain or .gz")
       ->required();
   command->add_option("--out", arguments->out, "Directory to write into; of a campaign its own by default");
-  command->add_option("--heave", arguments->others,
-                      "NAME=DIR: judge another program too, its heave of each run in DIR/<run>.csv");
-  command->add_option("--truth", arguments->truth,
-                      "Heave CSV to hold the heave against; column 'moving' selects where");
-  command
-      ->add_option("--high-pass-hz", arguments->against.high_pass_hz,
-                   "Compare above this frequency only (zero phase)")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--zero-line-m", arguments->waves.level_m, "Zero line of the waves, above the mean");
-  command->add_flag("--detrend", arguments->waves.remove_trend,
-                    "Zero line is the straight line of least squares");
-  command
-      ->add_option("--dead-band-m", arguments->waves.dead_band_m,
-                   "A crossing counts once the heave has left this band")
-      ->check(CLI::NonNegativeNumber);
-  command->add_flag("--netcdf", arguments->netcdf, "Write heave, waves and spectrum as record.nc (CF) too");
+  arguments->of_campaign = {
+      command
+          ->add_option("--heave", arguments->others,
+                       "NAME=DIR: judge another program too, its heave of each run in DIR/<run>.csv")
+          ->allow_extra_args(false)};
+  CLI::Option* truth = command->add_option(
+      "--truth", arguments->truth, "Heave CSV to hold the heave against; column 'moving' selects where");
+  arguments->of_heave = {truth,
+                         command
+                             ->add_option("--high-pass-hz", arguments->against.high_pass_hz,
+                                          "Compare above this frequency only (zero phase)")
+                             ->check(CLI::NonNegativeNumber)
+                             ->needs(truth),
+                         command->add_option("--zero-line-m", arguments->waves.level_m,
+                                             "Zero line of the waves, above the mean"),
+                         command->add_flag("--detrend", arguments->waves.remove_trend,
+                                           "Zero line is the straight line of least squares"),
+                         command
+                             ->add_option("--dead-band-m", arguments->waves.dead_band_m,
+                                          "A crossing counts once the heave has left this band")
+                             ->check(CLI::NonNegativeNumber),
+                         command->add_flag("--netcdf", arguments->netcdf,
+                                           "Write heave, waves and spectrum as record.nc (CF) too")};
   command->footer(
       "Examples:\n"
       "  waverig evaluate results/table2\n"

@@ -90,6 +90,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"NotSixPositions", "calibrate accelerometer level.csv --out out", "level.csv: six-position calibration: x up held still for 0 s"},
         BadCall{"NoMagnetometer", "calibrate compass level.csv --out out", "level.csv: no magnetic field"},
         BadCall{"NoCalibration", "estimate level.csv --calibration no.toml --out out", "no.toml"},
+        BadCall{"TruthForACampaign", "evaluate . --truth heave.csv --out out", "--truth: . is a directory"},
+        BadCall{"NetcdfForACampaign", "evaluate . --netcdf --out out", "--netcdf: . is a directory"},
+        BadCall{"DetrendForACampaign", "evaluate . --detrend --out out", "--detrend: . is a directory"},
+        BadCall{"DeadBandForACampaign", "evaluate . --dead-band-m 0.1 --out out", "--dead-band-m: . is a directory"},
+        BadCall{"HighPassWithoutTruth", "evaluate heave.csv --high-pass-hz 0.1 --out out", "--truth"},
+        BadCall{"OthersForAHeave", "evaluate heave.csv --heave a=. --out out", "--heave: heave.csv is no directory"},
+        BadCall{"OneValueToEachHeave", "evaluate --heave a=. nowhere --out out", "--heave: nowhere is no directory"},
+        BadCall{"CommaInAName", "evaluate . --heave a,b=. --out out", "--heave a,b=.: name 'a,b'"},
+        BadCall{"NameTwice", "evaluate . --heave a=. --heave a=. --out out", "--heave a=.: 'a' is given twice"},
         BadCall{"TimeStandsStill", "evaluate heave.csv --out out", "heave.csv, line 3, column utime"}),
     [](const auto& instance) { return instance.param.name; });
 
@@ -128,6 +137,11 @@ TEST(Program, ReportsCampaignsOfWavesAndOfSeasAndHoldsThemSideBySide) {
   EXPECT_NE(judged.find("heave_bound_percent"), std::string::npos) << judged;
   ASSERT_EQ(run(temporary, "evaluate sea --out anew").status, 0);  // which has the bound from the results that stand
   EXPECT_EQ(bytes_of(temporary / "anew/results.csv"), judged);
+  const std::string anew = bytes_of(temporary / "anew/results.json");
+  EXPECT_NE(anew.find("\"command\": \"waverig sweep sea.toml"), std::string::npos);
+  EXPECT_NE(anew.find("\"judged_command\": \"waverig evaluate sea --out anew\""), std::string::npos);
+  EXPECT_NE(anew.find("\"judged_version\": \""), std::string::npos);
+  EXPECT_EQ(bytes_of(temporary / "sea/results.json").find("judged_"), std::string::npos);
   for (const std::string campaign : {"waves", "sea"}) {
     const Outcome compared = run(temporary, "report " + campaign + " --compare " + campaign + " --out pair.html");
     ASSERT_EQ(compared.status, 0) << compared.err;

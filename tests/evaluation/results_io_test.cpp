@@ -88,10 +88,14 @@ TEST(Results, CsvBeginsWithTheAgreedColumns) {
 
 TEST(Results, ComeBackFromTheDiskWhole) {
   const Scratch scratch;
-  const CampaignResults c = campaign();
+  CampaignResults c = campaign();
+  c.judged_command = "waverig evaluate";
   write_results(scratch.path(), c);
   const CampaignResults back = read_results(scratch.path());
   EXPECT_EQ(back.seed, c.seed);
+  EXPECT_EQ(back.command, c.command);
+  EXPECT_EQ(back.judged_command, "waverig evaluate");
+  EXPECT_EQ(back.judged_version, "");
   EXPECT_EQ(nlohmann::json::parse(back.calibration_json), nlohmann::json::parse(c.calibration_json));
   ASSERT_EQ(back.runs.size(), 4u);
   EXPECT_EQ(back.runs[0].waves.size(), 5u);
