@@ -23,7 +23,7 @@ std::string read_text(const fs::path& path) {
 }
 
 fs::path partial_of(fs::path directory) {
-  if (directory.filename().empty()) directory = directory.parent_path();   // DIR/ means DIR
+  if (directory.filename().empty()) directory = directory.parent_path();  // DIR/ means DIR
   return directory += ".partial";
 }
 
@@ -33,24 +33,37 @@ ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode)
     : directory_(directory), working_(partial_of(directory)), mode_(mode) {
   const bool finished = fs::exists(directory_) && !fs::is_empty(directory_);
   if (finished && mode != Mode::kReplace)
-    throw UserError(fmt::format("--out {}: is there already; expected a new directory, or --replace to do it anew",
-                                directory_.string()));
+    throw UserError(
+        fmt::format("--out {}: is there already; expected a new directory, or --replace to do it anew",
+                    directory_.string()));
   if (mode == Mode::kFresh && fs::exists(working_))
-    throw UserError(fmt::format("--out {}: {} holds an unfinished campaign; expected --resume to go on or --replace to do it anew",
-                                directory_.string(), working_.string()));
+    throw UserError(fmt::format(
+        "--out {}: {} holds an unfinished campaign; expected --resume to go on or --replace to do it anew",
+        directory_.string(), working_.string()));
   if (mode == Mode::kReplace) fs::remove_all(working_);
   std::error_code error;
   fs::create_directories(runs(), error);
   if (error)
-    throw UserError(fmt::format("--out {}: cannot be made: {}; expected a writable place", directory_.string(), error.message()));
+    throw UserError(fmt::format("--out {}: cannot be made: {}; expected a writable place",
+                                directory_.string(), error.message()));
 }
 
-void ResultsDirectory::claim(const std::string& resolved_settings) {
+void ResultsDirectory::claim(const std::string& resolved_settings, const std::string& version) {
   const fs::path settings = working_ / kSettingsFile;
-  if (fs::exists(settings) && read_text(settings) != resolved_settings)
-    throw UserError(fmt::format("--resume: {}: was begun with other settings; expected the same campaign, seed and version",
-                                settings.string()));
-  evaluation::write_atomically(settings, resolved_settings);
+  const std::string made_by = fmt::format("# waverig {}\n", version);
+  if (fs::exists(settings)) {
+    const std::string begun = read_text(settings);
+    if (!begun.starts_with(made_by))
+      throw UserError(
+          fmt::format("--resume: {}:1: '{}': was begun by another version; expected '# waverig {}', or "
+                      "--replace to do it anew",
+                      settings.string(), begun.substr(0, begun.find('\n')), version));
+    if (begun != made_by + resolved_settings)
+      throw UserError(
+          fmt::format("--resume: {}: was begun with other settings; expected the same campaign and seed",
+                      settings.string()));
+  }
+  evaluation::write_atomically(settings, made_by + resolved_settings);
 }
 
 void ResultsDirectory::finish() {

@@ -11,6 +11,7 @@
 #include "rig/campaign/results_directory.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/compass_figures.h"
+#include "rig/cli/number_checks.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
@@ -97,7 +98,9 @@ void add_analyse(CLI::App& app, Command& chosen) {
   compass->add_option("--runs", arguments->study.runs, "Simulated runs; the document has 100")
       ->check(CLI::Range(2, 100000000))
       ->capture_default_str();
-  compass->add_option("--seed", arguments->study.seed, "Of the random numbers")->capture_default_str();
+  compass->add_option("--seed", arguments->study.seed, "Of the random numbers")
+      ->check(seed())
+      ->capture_default_str();
   compass
       ->add_option("--jobs", arguments->study.threads,
                    "Threads, 0 for all cores; the results do not depend on it")
@@ -106,6 +109,7 @@ void add_analyse(CLI::App& app, Command& chosen) {
   compass->add_flag("--replace", arguments->replace,
                     "Replace results that are there, once the new ones are whole");
   compass->footer("Example:\n  waverig analyse compass --runs 100000 --out results/compass");
+  command->footer("Example:\n  waverig analyse compass --out results/compass");
   compass->callback([arguments, &chosen] { chosen = [arguments] { return analyse_compass(*arguments); }; });
 }
 

@@ -15,6 +15,7 @@
 #include "rig/campaign/sweep.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/estimator_bench.h"
+#include "rig/cli/number_checks.h"
 
 namespace waverig::cli {
 namespace {
@@ -227,6 +228,7 @@ void add_bench_estimators(CLI::App& app, Command& chosen) {
   command->add_flag("--full", arguments->full,
                     "The whole grid, three records each, instead of a minute's choice");
   command->add_option("--seed", arguments->seed, "Of the sensor unit, the seas and the noise")
+      ->check(seed())
       ->capture_default_str();
   command->add_option("--records", arguments->seeds, "Records of each sea; 1, with --full 3")
       ->check(CLI::Range(1, 1000));

@@ -3,11 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "estimator/calibration/accelerometer_calibration.h"
+#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/heave_csv.h"
 #include "estimator/evaluation/heave_spectrum.h"
 #include "estimator/evaluation/netcdf_file.h"
@@ -19,7 +22,10 @@
 #include "lcmtypes/flags.h"
 #include "rig/campaign/sensor_unit.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/digest.h"
+#include "rig/cli/number_checks.h"
 #include "rig/cli/recording.h"
+#include "rig/cli/signals.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
@@ -78,6 +84,7 @@ class Collector : public estimator::Output {
  public:
   explicit Collector(const fs::path& heave_csv) : writer_(heave_csv) {}
   void heave(const estimator::HeaveSample& sample) override {
+    end_if_told();
     writer_.write(sample);
     series_.utime.push_back(sample.utime);
     series_.heave_m.push_back(sample.heave_m);
@@ -129,6 +136,42 @@ class SeaStates : public estimator::Output {
   std::vector<estimator::SeaState> seas_;
 };
 
+// What went by of the record.
+struct Record {
+  std::int64_t samples = 0, begin_utime = 0, end_utime = 0;
+  double force_sum_mps2 = 0;
+
+  void add(const ImuSample& sample) {
+    if (samples++ == 0) begin_utime = sample.utime;
+    end_utime = sample.utime;
+    force_sum_mps2 += sample.f_B.norm();
+  }
+};
+
+// The figures, by whom those of the sea state are, and what all was made of.
+std::string summary_json(const evaluation::Summary& summary, const EstimateArguments& arguments,
+                         const Record& record) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(evaluation::to_json(summary));
+  if (std::isfinite(summary.hm0_m))
+    json["sea_state_method"] = std::isfinite(summary.tm02_s) ? "spectral" : "directional";
+  nlohmann::ordered_json& made_of = json["provenance"];
+  made_of["version"] = kVersion;
+  const auto put_file = [&](const std::string& key, const std::string& path) {
+    if (path.empty()) return;
+    made_of[key] = path;
+    if (const std::string digest = sha256_of(path); !digest.empty()) made_of[key + "_sha256"] = digest;
+  };
+  put_file("input", arguments.input);
+  put_file("calibration", arguments.calibration);
+  made_of["gravity_mps2"] = arguments.gravity_mps2;
+  made_of["declination_deg"] = arguments.declination_deg;
+  made_of["rest_s"] = arguments.rest_s;
+  made_of["samples"] = record.samples;
+  made_of["begin_utime"] = record.begin_utime;
+  made_of["end_utime"] = record.end_utime;
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 void check_units(double mean_force_mps2, const EstimateArguments& arguments) {
   if (std::abs(mean_force_mps2 - arguments.gravity_mps2) > 0.4 * arguments.gravity_mps2)
     throw UserError(
@@ -156,23 +199,25 @@ int estimate(const EstimateArguments& arguments) {
   const fs::path out = arguments.out;
   std::error_code error;
   fs::create_directories(out, error);
+  // The last to be written: while it is missing the folder is not finished.
+  if (!error) fs::remove(out / "summary.json", error);
   if (error)
-    throw UserError(
-        fmt::format("--out {}: {}; expected a directory that can be made", arguments.out, error.message()));
-  fs::remove(out / "summary.json");  // the last to be written: while it is missing the folder is not finished
+    throw UserError(fmt::format("--out {}: {}; expected a directory that can be made and written",
+                                arguments.out, error.message()));
 
+  keep_signals();
   Collector collector(out / "heave.csv");
   SeaStates sea_states(arguments.method, settings);
   ImuSample sample;
-  double force_sum = 0;
-  std::int64_t samples = 0;
-  for (; source(sample); ++samples) {
-    force_sum += sample.f_B.norm();
+  Record record;
+  while (source(sample)) {
+    end_if_told();
+    record.add(sample);
     method->add(sample, collector);
     sea_states.add(sample);
   }
   method->finish(collector);
-  check_units(force_sum / static_cast<double>(samples), arguments);
+  check_units(record.force_sum_mps2 / static_cast<double>(record.samples), arguments);
 
   const std::vector<estimator::Wave> waves = collector.waves();
   evaluation::Summary summary = evaluation::summary_of(arguments.method, waves);
@@ -180,6 +225,7 @@ int estimate(const EstimateArguments& arguments) {
   std::vector<estimator::SeaState> seas = sea_states.finish();
   seas.insert(seas.end(), collector.seas().begin(), collector.seas().end());
   evaluation::take_sea(summary, seas);
+  end_if_told();
   collector.close();
   if (arguments.netcdf) {
     const evaluation::HeaveSeries& heave = collector.heave_series();
@@ -189,8 +235,9 @@ int estimate(const EstimateArguments& arguments) {
         {heave, waves, spectrum, summary, std::string("waverig ") + kVersion, "Heave of " + arguments.input});
   }
   evaluation::write_waves_csv(out / "waves.csv", waves);
-  evaluation::write_summary(out / "summary.json", summary);
-  fmt::print("{}", evaluation::to_json(summary));
+  const std::string json = summary_json(summary, arguments, record);
+  evaluation::write_atomically(out / "summary.json", json);
+  fmt::print("{}", json);
   return 0;
 }
 
@@ -216,7 +263,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
   command
       ->add_option("--rest-seconds", arguments->rest_s,
                    "The unit rests so long at the start: take the gyroscope's bias there")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->add_option("--gravity", arguments->gravity_mps2, "Local gravity, m/s^2")
       ->check(CLI::Range(9.7, 9.9))
       ->capture_default_str();
@@ -229,6 +276,8 @@ void add_estimate(CLI::App& app, Command& chosen) {
       "The sample CSV has the header utime,ax,ay,az,gx,gy,gz[,mx,my,mz][,temperature]: microseconds, m/s^2, "
       "rad/s;\n"
       "body axes forward, right, down; level at rest az = -g.\n"
+      "Waves are the method's; Hm0, Tm and Tp those of spectral, directions those of directional, whichever\n"
+      "the method (sea_state_method in summary.json).\n"
       "Examples:\n"
       "  waverig estimate recording.csv.gz --out results/mine --rest-seconds 5\n"
       "  waverig estimate recording.csv.gz --calibration unit7.json --out results/mine\n"

@@ -9,6 +9,7 @@
 #include "estimator/evaluation/run_record.h"
 #include "render/scene/film.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/number_checks.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
@@ -47,7 +48,7 @@ void add_film(CLI::App& app, Command& chosen) {
   command->add_option("--begin", arguments->film.begin_s, "Seconds of the record; the steady part's start by default");
   command->add_option("--seconds", arguments->film.duration_s, "Of the record; two periods by default");
   command->add_option("--speed", arguments->film.speed, "Record seconds per film second")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command->add_flag("--light", arguments->light, "On white instead of dark");
   command->footer("Example:\n  waverig film results/table2/runs/T12.00s_H100.0cm_r1.lcm --out rig.mp4 --speed 2");

@@ -1,11 +1,14 @@
 // waverig: the program. Every command in a file of its own; here only what they share: the parser, and how an
 // error becomes an exit status and one line on stderr.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include "lcmtypes/error.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/signals.h"
 #include "rig/version.h"
 
 namespace {
@@ -15,6 +18,14 @@ enum ExitStatus { kDone = 0, kAnswerIsNo = 1, kBadInput = 2 };
 int fail(ExitStatus status, const char* message) {
   std::fprintf(stderr, "waverig: %s\n", message);
   return status;
+}
+
+// A place that the user has named; where the machine fails, no other name would help.
+int fail(const std::filesystem::filesystem_error& error) {
+  const bool machine = error.code() == std::errc::no_space_on_device || error.code() == std::errc::io_error;
+  const std::string sentence = error.path1().string() + ": " + error.code().message() +
+                               "; expected a place that can be read and written";
+  return fail(machine ? kAnswerIsNo : kBadInput, sentence.c_str());
 }
 
 // CLI11 tells of a missing command where the one given is unknown.
@@ -36,15 +47,14 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("waverig ") + kVersion);
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
-  app.footer(
+  cli::Command chosen;
+  for (const auto add : cli::kCommands) add(app, chosen);
+  app.footer(  // last, or each command without one of its own would end with it
       "Examples:\n"
       "  waverig sweep rig/default.toml --out results/table2      plan, run, evaluate, draw\n"
       "  waverig plan rig/default.toml                            what would run, and what cannot\n"
       "  waverig estimate recording.csv.gz --out results/mine     heave and waves of a recording\n"
       "Each command explains itself with --help.");
-
-  cli::Command chosen;
-  for (const auto add : cli::kCommands) add(app, chosen);
 
   try {
     refuse_unknown_command(app, argc, argv);
@@ -57,6 +67,11 @@ int main(int argc, char** argv) {
     return fail(kBadInput, error.what());
   } catch (const NegativeAnswer& error) {
     return fail(kAnswerIsNo, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(error);
+  } catch (const cli::Interrupted& told) {
+    std::signal(told.signal, SIG_DFL);
+    return std::raise(told.signal);
   } catch (const std::exception& error) {
     return fail(kAnswerIsNo, error.what());
   }

@@ -11,7 +11,8 @@ namespace {
 
 constexpr const char* kSession =
     R"(Each node is a process of its own; they meet on the bus, in real time. The others first, motion last.
-Each ends well on SIGINT and SIGTERM. A whole session on the simulated rig, calibration.json from a sweep of the campaign:
+Each ends well on SIGINT and SIGTERM.
+Example: a whole session on the simulated rig, calibration.json from a sweep of the campaign:
 
   RUN=T06.00s_H060.0cm_r1
   waverig node rig-sim rig/default.toml --run $RUN --serial-link /tmp/sensor & sleep 2
@@ -67,6 +68,10 @@ void add_rig_sim(CLI::App& nodes, Command& chosen) {
       ->check(CLI::Range(20.0, 10000.0))
       ->capture_default_str();
   add_speed(*command, a->speed);
+  command->footer(
+      "Examples:\n"
+      "  waverig node rig-sim rig/default.toml --run T06.00s_H060.0cm_r1 --serial-link /tmp/sensor\n"
+      "  waverig node rig-sim rig/default.toml --run T12.00s_H100.0cm_r2 --port 0 --speed 0.5");
 }
 
 void add_motion(CLI::App& nodes, Command& chosen) {
@@ -91,7 +96,11 @@ void add_motion(CLI::App& nodes, Command& chosen) {
       ->check(CLI::Range(1.0, 5000.0))
       ->capture_default_str();
   add_speed(*command, a->speed);
-  command->footer("Exit status 1 where an alarm or a signal stopped the run before its end.");
+  command->footer(
+      "Exit status 1 where an alarm or a signal stopped the run before its end.\n"
+      "Examples:\n"
+      "  waverig node motion rig/default.toml --run T06.00s_H060.0cm_r1 --drive tcp://127.0.0.1:5020\n"
+      "  waverig node motion rig/default.toml --run T06.00s_H060.0cm_r1 --drive rtu:/dev/ttyUSB0");
 }
 
 void add_acquisition(CLI::App& nodes, Command& chosen) {
@@ -103,6 +112,11 @@ void add_acquisition(CLI::App& nodes, Command& chosen) {
   command->add_option("--baud", a->baud, "Of the serial port")->capture_default_str();
   command->add_option("--calibration", a->calibration,
                       "calibration.json; without it samples are flagged as uncalibrated");
+  command->footer(
+      "Examples:\n"
+      "  waverig node acquisition rig/default.toml --serial /tmp/sensor --calibration "
+      "results/default/calibration.json\n"
+      "  waverig node acquisition rig/default.toml --serial /dev/ttyUSB1 --baud 230400");
 }
 
 void add_estimator(CLI::App& nodes, Command& chosen) {
@@ -114,6 +128,10 @@ void add_estimator(CLI::App& nodes, Command& chosen) {
   command->add_option("--calibration", a->calibration,
                       "calibration.json, for what it says of its own uncertainty");
   command->add_flag("--one-record", a->one_record, "End after one record");
+  command->footer(
+      "Examples:\n"
+      "  waverig node estimator harmonic --campaign rig/default.toml --one-record\n"
+      "  waverig node estimator realtime --calibration results/default/calibration.json");
 }
 
 void add_evaluator(CLI::App& nodes, Command& chosen) {
@@ -130,7 +148,10 @@ void add_evaluator(CLI::App& nodes, Command& chosen) {
                    "Ends when no estimate came for so long after the end of the record")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
-  command->footer("Exit status 1 where the run was stopped, or nothing was heard.");
+  command->footer(
+      "Exit status 1 where the run was stopped, or nothing was heard.\n"
+      "Example:\n"
+      "  waverig node evaluator --campaign rig/default.toml --run T06.00s_H060.0cm_r1 --out results/T06");
 }
 
 void add_recorder(CLI::App& nodes, Command& chosen) {
@@ -145,16 +166,25 @@ void add_recorder(CLI::App& nodes, Command& chosen) {
                    "With --one-record: ends when no estimate came for so long after its end")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  waverig node recorder --out T06.lcm --one-record\n"
+      "  waverig node recorder --out session.lcm --replace");
 }
 
 // Not on the bus: instruments have cables of their own.
 void add_instruments_sim(CLI::App& nodes, Command& chosen) {
   auto a = std::make_shared<InstrumentsSimArguments>();
   CLI::App* command = nodes.add_subcommand(
-      "instruments-sim", "The calibration bench's instruments, simulated: raw SCPI, VXI-11, GPIB gateway, serial ports");
-  command->add_option("laboratory", a->laboratory, "Laboratory file (TOML), e.g. rig/sequences/laboratory.toml")->required();
-  command->add_option("--simulation", a->simulation, "Which units and instruments, and what goes wrong (TOML)");
-  command->add_option("--write", a->write, "Write the laboratory file with the addresses of the simulated instruments");
+      "instruments-sim",
+      "The calibration bench's instruments, simulated: raw SCPI, VXI-11, GPIB gateway, serial ports");
+  command
+      ->add_option("laboratory", a->laboratory, "Laboratory file (TOML), e.g. rig/sequences/laboratory.toml")
+      ->required();
+  command->add_option("--simulation", a->simulation,
+                      "Which units and instruments, and what goes wrong (TOML)");
+  command->add_option("--write", a->write,
+                      "Write the laboratory file with the addresses of the simulated instruments");
   command->footer(
       "Prints every way to every instrument and serves until SIGINT or SIGTERM.\n"
       "Example:\n"

@@ -1,5 +1,6 @@
 // waverig sweep and waverig plan.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -13,12 +14,15 @@
 #include "rig/campaign/sweep.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/draw.h"
+#include "rig/cli/number_checks.h"
+#include "rig/cli/signals.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
 namespace {
 
-constexpr const char* kCampaignHelp = "Campaign file (TOML); without it the default campaign, Table 2 of Lee 2014";
+constexpr const char* kCampaignHelp =
+    "Campaign file (TOML); without it the default campaign, Table 2 of Lee 2014";
 
 struct SweepArguments {
   std::string campaign, out, shard;
@@ -31,8 +35,8 @@ rig::Shard parse_shard(const std::string& text) {
   rig::Shard shard;
   char rest = 0;
   if (text.empty()) return shard;
-  if (std::sscanf(text.c_str(), "%d/%d%c", &shard.number, &shard.of, &rest) != 2 || shard.of < 1 || shard.number < 1 ||
-      shard.number > shard.of)
+  if (std::sscanf(text.c_str(), "%d/%d%c", &shard.number, &shard.of, &rest) != 2 || shard.of < 1 ||
+      shard.number < 1 || shard.number > shard.of)
     throw UserError(fmt::format("--shard {}: expected K/N with 1 <= K <= N, e.g. 2/8", text));
   return shard;
 }
@@ -43,13 +47,17 @@ rig::ResultsDirectory::Mode mode_of(const SweepArguments& arguments) {
 }
 
 int sweep(const SweepArguments& arguments) {
-  const rig::Campaign campaign = rig::read_campaign(arguments.campaign, arguments.seed ? &*arguments.seed : nullptr);
+  const rig::Campaign campaign =
+      rig::read_campaign(arguments.campaign, arguments.seed ? &*arguments.seed : nullptr);
   const rig::Shard shard = parse_shard(arguments.shard);
   const rig::CampaignPlan plan = rig::plan_campaign(campaign.settings);
   rig::refuse_impossible(campaign.settings, plan);
 
   rig::ResultsDirectory directory(arguments.out, mode_of(arguments));
-  directory.claim(campaign.resolved);
+  directory.claim(campaign.resolved, kVersion);
+  set_last_words(
+      fmt::format("{}waverig: interrupted; {} keeps the runs that are done, --resume goes on with them\n",
+                  isatty(STDERR_FILENO) ? "\n" : "", directory.working().string()));
   if (const auto& front_end = campaign.settings.calibration.front_end)
     estimator::save(front_end->calibration, directory.working() / rig::kFrontEndFile);
   const rig::CalibratedUnit calibrated = rig::calibrate(campaign.settings);
@@ -59,16 +67,19 @@ int sweep(const SweepArguments& arguments) {
   const rig::SweepOptions options{
       .jobs = arguments.jobs,
       .shard = shard,
-      .command = fmt::format("waverig sweep {}--seed {}{}", arguments.campaign.empty() ? "" : arguments.campaign + " ", campaign.settings.seed,
-                             arguments.shard.empty() ? "" : " --shard " + arguments.shard),
+      .command = fmt::format(
+          "waverig sweep {}--seed {}{}", arguments.campaign.empty() ? "" : arguments.campaign + " ",
+          campaign.settings.seed, arguments.shard.empty() ? "" : " --shard " + arguments.shard),
       .version = kVersion};
   const evaluation::CampaignResults results =
       rig::run_campaign(campaign, calibrated, rig::runs_of_shard(plan, shard), directory, options);
   draw_campaign(results, directory.working(), calibrated.unit, arguments.jobs);
-  evaluation::write_atomically(directory.working() / "report.html", render::report_html(results, directory.working()));
+  evaluation::write_atomically(directory.working() / "report.html",
+                               render::report_html(results, directory.working()));
+  set_last_words({});
   directory.finish();
-  fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover), arguments.out,
-             (std::filesystem::path(arguments.out) / "report.html").string());
+  fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover),
+             arguments.out, (std::filesystem::path(arguments.out) / "report.html").string());
   return 0;
 }
 
@@ -76,7 +87,8 @@ int plan(const std::string& file) {
   const rig::Campaign campaign = rig::read_campaign(file);
   const rig::CampaignPlan planned = rig::plan_campaign(campaign.settings);
   fmt::print("{}", rig::described(campaign.settings, planned));
-  const bool refused = std::any_of(planned.settings.begin(), planned.settings.end(), [](const auto& s) { return s.refused; });
+  const bool refused =
+      std::any_of(planned.settings.begin(), planned.settings.end(), [](const auto& s) { return s.refused; });
   return refused && campaign.settings.sweep.outside == rig::OutsideEnvelope::kRefuse ? 1 : 0;
 }
 
@@ -90,10 +102,13 @@ void add_sweep(CLI::App& app, Command& chosen) {
   command->add_option("--jobs", arguments->jobs, "Runs at a time; the results do not depend on it")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Instead of the campaign's seed");
-  command->add_option("--shard", arguments->shard, "K/N: only the Kth of N parts, for many machines; then waverig merge");
+  command->add_option("--seed", arguments->seed, "Instead of the campaign's seed")->check(seed());
+  command->add_option("--shard", arguments->shard,
+                      "K/N: only the Kth of N parts, for many machines; then waverig merge");
   auto* resume = command->add_flag("--resume", arguments->resume, "Go on with an interrupted campaign");
-  command->add_flag("--replace", arguments->replace, "Replace results that are there, once the new ones are whole")
+  command
+      ->add_flag("--replace", arguments->replace,
+                 "Replace results that are there, once the new ones are whole")
       ->excludes(resume);
   command->footer(
       "Examples:\n"
@@ -106,10 +121,12 @@ void add_sweep(CLI::App& app, Command& chosen) {
 
 void add_plan(CLI::App& app, Command& chosen) {
   auto file = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("plan", "Say what a campaign would run, and what cannot work and why");
+  CLI::App* command =
+      app.add_subcommand("plan", "Say what a campaign would run, and what cannot work and why");
   command->add_option("campaign", *file, kCampaignHelp);
-  command->footer("Exit status 1 where a setting is refused and the campaign does not skip such.\n"
-                  "Example:\n  waverig plan rig/default.toml");
+  command->footer(
+      "Exit status 1 where a setting is refused and the campaign does not skip such.\n"
+      "Example:\n  waverig plan rig/default.toml");
   command->callback([file, &chosen] { chosen = [file] { return plan(*file); }; });
 }
 

@@ -28,7 +28,7 @@ void sweep(const std::filesystem::path& out, int repeats) {
           std::to_string(repeats) + "\n",
       "flat.toml"));
   ResultsDirectory directory(out, ResultsDirectory::Mode::kFresh);
-  directory.claim(campaign.resolved);
+  directory.claim(campaign.resolved, "test");
   run_campaign(campaign, calibrate(campaign.settings), plan_campaign(campaign.settings).runs, directory, {});
   directory.finish();
 }

@@ -1,5 +1,6 @@
 // The program from outside: exit status, the one line on stderr, and that bad input harms nothing.
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -7,7 +8,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "estimator/calibration/accelerometer_calibration.h"
 
@@ -32,16 +35,33 @@ Outcome run(const TemporaryDirectory& temporary, const std::string& arguments) {
 constexpr const char* kTiny =
     "name = \"tiny\"\n[sweep]\nperiods_s = [4.0]\nheights_cm = [50.0]\nduration_s = 30.0\nrepeats = 1\nramp_periods = 1\n";
 
-TEST(Program, HelpOfEveryCommandShowsAnExampleAndExitsWithZero) {
+// The names under "Subcommands:" of a help text.
+std::vector<std::string> subcommands_in(const std::string& help) {
+  std::vector<std::string> names;
+  std::istringstream lines(help);
+  std::string line;
+  while (std::getline(lines, line) && line != "Subcommands:") continue;
+  while (std::getline(lines, line) && line.starts_with("  "))
+    if (line[2] != ' ') names.push_back(line.substr(2, line.find(' ', 2) - 2));
+  return names;
+}
+
+// Every command in its turn, those of commands too: how many.
+int expect_examples(const TemporaryDirectory& temporary, const std::string& command) {
+  const Outcome help = run(temporary, command + "--help");
+  EXPECT_EQ(help.status, 0) << command;
+  const std::size_t examples = help.out.find("Example");
+  EXPECT_NE(examples, std::string::npos) << command << help.out;
+  const std::string shown = help.out.substr(std::min(examples, help.out.size()));
+  EXPECT_NE(shown.find("\n  waverig " + command), std::string::npos) << command << help.out;
+  int commands = 1;
+  for (const std::string& name : subcommands_in(help.out)) commands += expect_examples(temporary, command + name + " ");
+  return commands;
+}
+
+TEST(Program, HelpOfEveryCommandShowsExamplesOfItsOwn) {
   const TemporaryDirectory temporary;
-  const Outcome help = run(temporary, "--help");
-  EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.out.find("Examples:"), std::string::npos);
-  for (const char* command : {"sweep", "plan", "estimate", "evaluate", "figures", "report", "film", "compare", "merge", "calibrate"}) {
-    const Outcome outcome = run(temporary, std::string(command) + " --help");
-    EXPECT_EQ(outcome.status, 0) << command;
-    EXPECT_NE(outcome.out.find("waverig " + std::string(command)), std::string::npos) << command;
-  }
+  EXPECT_GT(expect_examples(temporary, ""), 28);
 }
 
 struct BadCall {
@@ -87,6 +107,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"NoHeader", "estimate no_header.csv --out out", "no_header.csv, line 1"},
         BadCall{"TruncatedLog", "estimate truncated.lcm --out out", "truncated.lcm"},
         BadCall{"UnknownMethod", "estimate broken_row.csv --method magic --out out", "magic"},
+        BadCall{"RestIsNoNumber", "estimate level.csv --rest-seconds abc --out out", "--rest-seconds: abc: expected a number of 0 or more"},
+        BadCall{"RestIsNaN", "estimate level.csv --rest-seconds nan --out out", "--rest-seconds: nan: expected a number of 0 or more"},
+        BadCall{"SpeedIsZero", "film truncated.lcm --speed 0 --out out", "--speed: 0: expected a number above 0"},
+        BadCall{"SeedBelowZero", "sweep tiny.toml --seed -1 --out out", "--seed: -1: expected a whole number from 0"},
+        BadCall{"SeedOfAnAnalysis", "analyse compass --seed -1 --out out", "--seed: -1: expected a whole number from 0"},
+        BadCall{"OutIsAFile", "estimate level.csv --out level.csv", "--out level.csv: "},
         BadCall{"NotSixPositions", "calibrate accelerometer level.csv --out out", "level.csv: six-position calibration: x up held still for 0 s"},
         BadCall{"NoMagnetometer", "calibrate compass level.csv --out out", "level.csv: no magnetic field"},
         BadCall{"NoCalibration", "estimate level.csv --calibration no.toml --out out", "no.toml"},
@@ -248,6 +274,56 @@ TEST(Program, CalibratesSamplesOfALogOnce) {
   }
   const Outcome once = run(temporary, "estimate raw" + run_log + "--calibration unit.json --out once");
   EXPECT_EQ(once.status, 0) << once.err;
+}
+
+TEST(Program, SaysInTheSummaryWhatItWasMadeOf) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  estimator::store_calibration({}, temporary / "unit.json");
+  const Outcome outcome = run(temporary, "estimate wave.csv --method realtime --calibration unit.json --gravity 9.81 "
+                                         "--rest-seconds 0.5 --out out");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string summary = bytes_of(temporary / "out/summary.json");
+  EXPECT_EQ(summary, outcome.out);
+  const std::string version = run(temporary, "--version").out;  // "waverig X\n"
+  const std::string sum = run(temporary, "--version >/dev/null; sha256sum wave.csv").out.substr(0, 64);
+  for (const std::string& expected :
+       {std::string("\"method\": \"realtime\""), std::string("\"sea_state_method\": \"spectral\""),
+        "\"version\": \"" + version.substr(8, version.size() - 9) + "\"", std::string("\"input\": \"wave.csv\""),
+        "\"input_sha256\": \"" + sum + "\"", std::string("\"calibration\": \"unit.json\""),
+        std::string("\"gravity_mps2\": 9.81"), std::string("\"rest_s\": 0.5"), std::string("\"samples\": 12000"),
+        std::string("\"begin_utime\": 0"), std::string("\"end_utime\": 119990000")})
+    EXPECT_NE(summary.find(expected), std::string::npos) << expected << "\n" << summary;
+}
+
+// Runs a command, waits for a file to be there, and ends the command by SIGTERM: its exit status as a shell has it.
+Outcome ended_early(const TemporaryDirectory& temporary, const std::string& arguments, const std::string& file) {
+  temporary.write("end.sh", "cd '" + temporary.path().string() + "'\n" WAVERIG_PROGRAM " " + arguments +
+                                " >stdout 2>stderr &\n"
+                                "for i in $(seq 3000); do ls " + file + " >/dev/null 2>&1 && break; sleep 0.01; done\n"
+                                "kill -TERM $!\nwait $!\n");
+  const int status = std::system(("sh " + (temporary / "end.sh").string() + " 2>/dev/null").c_str());
+  return {WEXITSTATUS(status), bytes_of(temporary / "stdout"), bytes_of(temporary / "stderr")};
+}
+
+TEST(Program, NamesResumeWhereASweepIsInterrupted) {
+  const TemporaryDirectory temporary;
+  temporary.write("long.toml",
+                  "name = \"long\"\n[sweep]\nperiods_s = [4.0]\nheights_cm = [50.0]\nduration_s = 20000.0\n");
+  const Outcome outcome = ended_early(temporary, "sweep long.toml --jobs 2 --out out", "out.partial/calibration.json");
+  EXPECT_EQ(outcome.status, 128 + SIGTERM);
+  EXPECT_EQ(outcome.err, "waverig: interrupted; out.partial keeps the runs that are done, --resume goes on with them\n");
+}
+
+TEST(Program, LeavesNothingHalfWhereAnEstimateIsInterrupted) {
+  const TemporaryDirectory temporary;
+  std::ofstream record(temporary / "long.csv");
+  record << "utime,ax,ay,az,gx,gy,gz\n";
+  for (int row = 0; row < 1000000; ++row) record << row << "0000,0,0,-9.8,0,0,0\n";
+  record.close();
+  const Outcome outcome = ended_early(temporary, "estimate long.csv --method realtime --out out", "out/heave.csv.*");
+  EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
+  EXPECT_TRUE(std::filesystem::is_empty(temporary / "out"));
 }
 
 TEST(Program, PlanSaysNoWithExitOneAndTheReason) {

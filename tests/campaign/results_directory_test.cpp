@@ -47,10 +47,32 @@ TEST(ResultsDirectory, KeepsTheOldResultsUntilTheNewAreWhole) {
 
 TEST(ResultsDirectory, ResumesOnlyTheSameSettings) {
   const TemporaryDirectory temporary;
-  ResultsDirectory(temporary / "out", Mode::kFresh).claim("seed = 1\n");
+  ResultsDirectory(temporary / "out", Mode::kFresh).claim("seed = 1\n", "1.0");
   ResultsDirectory again(temporary / "out", Mode::kResume);
-  EXPECT_NO_THROW(again.claim("seed = 1\n"));
-  EXPECT_THROW(again.claim("seed = 2\n"), UserError);
+  EXPECT_NO_THROW(again.claim("seed = 1\n", "1.0"));
+  EXPECT_THROW(again.claim("seed = 2\n", "1.0"), UserError);
+}
+
+TEST(ResultsDirectory, ResumesOnlyWhatItsOwnVersionBegan) {
+  const TemporaryDirectory temporary;
+  ResultsDirectory(temporary / "out", Mode::kFresh).claim("seed = 1\n", "1.0");
+  ResultsDirectory again(temporary / "out", Mode::kResume);
+  try {
+    again.claim("seed = 1\n", "1.0+1");
+    FAIL() << "runs of two versions in one campaign";
+  } catch (const UserError& refusal) {
+    const std::string sentence = refusal.what();
+    EXPECT_NE(sentence.find("campaign.toml:1: '# waverig 1.0': was begun by another version"), std::string::npos) << sentence;
+    EXPECT_NE(sentence.find("expected '# waverig 1.0+1'"), std::string::npos) << sentence;
+  }
+  EXPECT_NO_THROW(again.claim("seed = 1\n", "1.0"));
+}
+
+TEST(ResultsDirectory, DoesNotResumeWhatDoesNotSayItsVersion) {
+  const TemporaryDirectory temporary;
+  ResultsDirectory before(temporary / "out", Mode::kFresh);
+  std::ofstream(before.working() / "campaign.toml") << "seed = 1\n";
+  EXPECT_THROW(ResultsDirectory(temporary / "out", Mode::kResume).claim("seed = 1\n", "1.0"), UserError);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ Outcome sweep(const Campaign& campaign, const std::filesystem::path& out, int jo
   Outcome outcome;
   outcome.runs = plan_campaign(campaign.settings).runs;
   ResultsDirectory directory(out, mode);
-  directory.claim(campaign.resolved);
+  directory.claim(campaign.resolved, "test");
   const CalibratedUnit calibrated = calibrate(campaign.settings);
   SweepOptions options;
   options.jobs = jobs;

@@ -56,7 +56,7 @@ int run_evaluator(const EvaluatorArguments& arguments) {
     resolved = campaign.resolved;
   }
   rig::ResultsDirectory directory = new_directory(arguments);
-  if (!resolved.empty()) directory.claim(resolved);
+  if (!resolved.empty()) directory.claim(resolved, kVersion);
 
   Requests requests;
   Bus bus = open_bus(arguments.bus);

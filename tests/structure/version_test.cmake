@@ -1,0 +1,48 @@
+# rig/version.cmake in a checkout of its own: before there is a commit, at a commit, at the next one, and changed since.
+find_program(GIT git)
+if(NOT GIT)
+  message(STATUS "no git")
+  return()
+endif()
+file(REMOVE_RECURSE ${WORK})
+set(tree ${WORK}/tree)
+file(MAKE_DIRECTORY ${tree})
+
+function(git)
+  execute_process(COMMAND ${GIT} -C ${tree} -c user.name=test -c user.email=test@localhost ${ARGN}
+    OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+# stamp(EXPECTED): the version must match it.
+function(stamp expected)
+  execute_process(COMMAND ${CMAKE_COMMAND} -DSOURCE=${tree} -DVERSION=1.2.3 -DTEMPLATE=${SOURCE}/version.cpp.in
+    -DOUT=${WORK}/version.cpp -P ${SOURCE}/version.cmake COMMAND_ERROR_IS_FATAL ANY)
+  file(READ ${WORK}/version.cpp text)
+  if(NOT text MATCHES "\"${expected}\"")
+    message(FATAL_ERROR "${text}: expected ${expected}")
+  endif()
+endfunction()
+
+function(commit text)
+  file(WRITE ${tree}/file ${text})
+  git(add file)
+  git(commit -q -m ${text})
+  execute_process(COMMAND ${GIT} -C ${tree} rev-parse --short=12 HEAD OUTPUT_VARIABLE head OUTPUT_STRIP_TRAILING_WHITESPACE)
+  set(head ${head} PARENT_SCOPE)
+endfunction()
+
+git(init -q)
+stamp("1.2.3")
+commit(one)
+stamp("1\\.2\\.3\\+${head}")
+file(TIMESTAMP ${WORK}/version.cpp written "%s")
+execute_process(COMMAND ${CMAKE_COMMAND} -E sleep 1.1)
+stamp("1\\.2\\.3\\+${head}")
+file(TIMESTAMP ${WORK}/version.cpp again "%s")
+if(NOT again EQUAL written)
+  message(FATAL_ERROR "written again without a change")
+endif()
+commit(two)
+stamp("1\\.2\\.3\\+${head}")
+file(WRITE ${tree}/file three)
+stamp("1\\.2\\.3\\+${head}-dirty")
