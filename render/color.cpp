@@ -40,6 +40,11 @@ Color color_of(ColorMap map, double share) {
   return mixed(stops[i], stops[i + 1], static_cast<float>(at - static_cast<double>(i)));
 }
 
+Color ramp_color(Theme theme, double share) {
+  const double low = theme == Theme::kPrint ? 0.05 : 0.3, high = theme == Theme::kPrint ? 0.85 : 1;
+  return color_of(ColorMap::kSequential, low + (high - low) * share);
+}
+
 float luminance(Color color) {
   const auto linear = [](float c) {
     return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);

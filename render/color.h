@@ -36,6 +36,8 @@ enum class ColorMap { kSequential, kDiverging };
 // share 0 to 1. Sequential: cividis (Nunez et al. 2018). Diverging: blue to
 // white to vermillion, 0.5 neutral.
 Color color_of(ColorMap map, double share);
+// The part of the sequential map that stands off from the theme's background: series that have an order.
+Color ramp_color(Theme theme, double share);
 // Relative luminance of WCAG 2; text on a colour is white below 0.35.
 float luminance(Color color);
 

@@ -155,7 +155,7 @@ struct Draw {
     if (m.x_edges.size() < 2 || m.y_edges.size() < 2) return;
     const ColorScale scale = color_scale_of(m);
     const std::size_t columns = m.x_edges.size() - 1, rows = m.y_edges.size() - 1;
-    const int decimals = decimals_that_fit(m);
+    const CellNumbers numbers = numbers_that_fit(m);
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t c = 0; c < columns; ++c) {
         const std::size_t i = r * columns + c;
@@ -163,37 +163,42 @@ struct Draw {
         const Vec2 a = view.at(m.x_edges[c], m.y_edges[r + 1]), b = view.at(m.x_edges[c + 1], m.y_edges[r]);
         const Color fill = scale.at(m.values[i]);
         view.painter.fill_rect({std::round(a.x), std::round(a.y), std::round(b.x), std::round(b.y)}, fill);
-        const std::string text = i < m.texts.size() ? m.texts[i]
-                                 : decimals >= 0    ? cell_number(m, m.values[i], decimals)
-                                                    : "";
+        const bool own = i < m.texts.size();
+        const std::string text = own                     ? m.texts[i]
+                                 : numbers.decimals >= 0 ? cell_number(m, m.values[i], numbers.decimals)
+                                                         : "";
         if (text.empty()) continue;
-        cell_text(text, {a.x, a.y, b.x, b.y}, luminance(fill) < 0.18F ? rgb(0xFFFFFF) : rgb(0x1A1A1A));
+        cell_text(text, own ? view.tick_text_px() : numbers.size_px, {a.x, a.y, b.x, b.y},
+                  luminance(fill) < 0.18F ? rgb(0xFFFFFF) : rgb(0x1A1A1A));
       }
     }
   }
-  // On logarithmic colours the digits that count move with the number: those are its decimals below 1.
   static std::string cell_number(const HeatMap& m, double value, int decimals) {
-    const int before = m.log_colors && value >= 1 ? 1 + static_cast<int>(std::floor(std::log10(value))) : 0;
-    return number_text(value, std::max(0, decimals - before));
+    return m.log_colors ? significant_text(value, decimals) : number_text(value, decimals);
   }
-  // As many as wanted, or fewer but one, so that every cell holds its number; -1 where none does.
-  int decimals_that_fit(const HeatMap& m) const {
+  struct CellNumbers {
+    int decimals = -1;  // -1: none has room
+    float size_px = 0;
+  };
+  // Every cell holds its number or none does: smaller text comes before fewer digits.
+  CellNumbers numbers_that_fit(const HeatMap& m) const {
     float narrowest = view.plot.width();
     for (std::size_t c = 0; c + 1 < m.x_edges.size(); ++c)
       narrowest = std::min(narrowest, std::abs(view.x(m.x_edges[c + 1]) - view.x(m.x_edges[c])));
-    for (int decimals = m.decimals; decimals >= 0 && decimals >= std::min(m.decimals, 1); --decimals) {
-      float widest = 0;
-      for (const double value : m.values) {
-        if (std::isfinite(value))
-          widest =
-              std::max(widest, view.fonts.width_px(cell_number(m, value, decimals), view.tick_text_px()));
+    const int fewest = std::min(m.decimals, m.log_colors ? 2 : 1);
+    for (int decimals = m.decimals; decimals >= 0 && decimals >= fewest; --decimals) {
+      for (const float size : {kTickText * view.text_pt, kSmallText * view.text_pt}) {
+        float widest = 0;
+        for (const double value : m.values) {
+          if (std::isfinite(value))
+            widest = std::max(widest, view.fonts.width_px(cell_number(m, value, decimals), size));
+        }
+        if (widest + 0.4F * size < narrowest) return {decimals, size};
       }
-      if (widest + 0.4F * view.tick_text_px() < narrowest) return decimals;
     }
-    return -1;
+    return {};
   }
-  void cell_text(const std::string& text, const Rect& cell, Color ink) const {
-    const float size = view.tick_text_px();
+  void cell_text(const std::string& text, float size, const Rect& cell, Color ink) const {
     std::vector<std::string> lines;
     for (std::size_t from = 0; from <= text.size();) {
       const std::size_t to = std::min(text.find('\n', from), text.size());

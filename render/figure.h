@@ -52,6 +52,7 @@ struct Look {
   Marker marker = Marker::kNone;
   double marker_pt = 4.0;
   double alpha = 1.0;
+  double ramp = kAuto;  // 0 to 1: a place among series that have an order, instead of color
 };
 
 struct Line {
@@ -104,8 +105,9 @@ struct HeatMap {
   double low = kAuto, high = kAuto;  // of the colour bar; diverging: symmetric
                                      // about 0 by default
   bool log_colors = false;
-  bool color_bar = true;             // false where another panel's bar serves
-  int decimals = -1;                 // of the number written into each cell; -1: none
+  bool color_bar = true;  // false where another panel's bar serves
+  int decimals = -1;      // of the number written into each cell, fewer where they do not fit; on logarithmic
+                      // colours its significant digits, at least two; -1: none
   std::vector<std::string> texts{};  // written into the cells instead of the numbers
 };
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr float kEdge = 6, kGap = 9, kTickLength = 3, kTickGap = 2.5F;  // points
 constexpr float kColorBarGap = 7, kColorBarWidth = 9;
+constexpr float kRimText = 14;  // around a polar plot: degrees or points of the compass
 
 float line_height(float size_px) { return 1.3F * size_px; }
 
@@ -209,7 +210,7 @@ class Planner {
     }
     for (PanelPlan& p : plan_.panels) {
       const std::size_t last = n(p.column + p.panel.column_span - 1);
-      p.title_bottom = y0[n(p.row)] - top[n(p.row)] +
+      p.title_bottom = y0[n(p.row)] - p.margins.top +
                        (p.panel.title.empty() ? 0 : line_height(kPanelTitleText * plan_.text_pt));
       p.plot = {std::round(x0[n(p.column)]), std::round(y0[n(p.row)]), std::round(x0[last] + width),
                 std::round(y1[n(p.row)])};
@@ -218,8 +219,20 @@ class Planner {
       p.x.to_px = p.plot.right;
       p.y.from_px = p.plot.bottom;
       p.y.to_px = p.plot.top;
+      p.bar_bottom = p.plot.bottom;
       if (p.panel.equal_scales && !p.panel.polar) equalise(p);
     }
+    for (PanelPlan& p : plan_.panels) {
+      if (!shows_map_without_bar(p)) continue;
+      for (PanelPlan& q : plan_.panels)
+        if (q.heat != nullptr) q.bar_bottom = std::max(q.bar_bottom, p.plot.bottom);
+    }
+  }
+
+  static bool shows_map_without_bar(const PanelPlan& p) {
+    return p.heat == nullptr && std::ranges::any_of(p.panel.marks, [](const Mark& mark) {
+             return std::holds_alternative<HeatMap>(mark);
+           });
   }
 
   // Widens the shorter axis about its middle until a unit is equally long on
@@ -240,16 +253,15 @@ class Planner {
     m = {};
     if (!p.panel.title.empty()) m.top += line_height(kPanelTitleText * tpt) + 2 * pt;
     p.legend.entries = legend_entries(p.panel, p.plot.width(), fonts_, tpt);
-    if (p.legend.above) {
-      m.top += legend_height_px(lines_above(p), tpt) + 3 * pt;
-    }
+    const float strip = p.legend.outside ? legend_height_px(lines_outside(p), tpt) + 3 * pt : 0;
     if (p.panel.polar) {
       p.y_ticks = linear_ticks(p.y.low, p.y.high, 4);
       m.left = m.right = 26 * tpt;
-      m.top += 14 * tpt;
-      m.bottom = 14 * tpt;
+      m.top += kRimText * tpt;
+      m.bottom = kRimText * tpt + strip;
       return;
     }
+    m.top += strip;
     p.x_ticks = ticks_of(p.panel.x, p.x, p.plot.width(), 24 * tpt, fonts_, tick, true);
     p.y_ticks = ticks_of(p.panel.y, p.y, p.plot.height(), 15 * tpt, fonts_, tick, false);
     if (!p.panel.x.categories.empty()) {
@@ -278,14 +290,15 @@ class Planner {
     if (p.heat != nullptr) {
       const ColorScale scale = color_scale_of(*p.heat);
       const Axis axis{.label = p.heat->label, .unit = p.heat->unit, .scale = scale.mapping.scale};
-      const Ticks ticks = ticks_of(axis, scale.mapping, p.plot.height(), 15 * tpt, fonts_, tick, false);
+      const float bar = std::max(p.plot.height(), p.bar_bottom - p.plot.top);
+      const Ticks ticks = ticks_of(axis, scale.mapping, bar, 15 * tpt, fonts_, tick, false);
       m.right =
           (kColorBarGap + kColorBarWidth + kTickLength + kTickGap) * pt + widest_label(ticks, fonts_, tick);
       if (!axis_text(axis, ticks).empty()) m.right += line_height(label) + 2 * pt;
     }
   }
 
-  int lines_above(const PanelPlan& p) const {
+  int lines_outside(const PanelPlan& p) const {
     const std::vector<LegendSpot> spots = flowed(p.legend.entries, p.plot.width(), fonts_, plan_.text_pt);
     return spots.empty() ? 0 : spots.back().line + 1;
   }
@@ -293,7 +306,7 @@ class Planner {
   void place_legends() {
     for (PanelPlan& p : plan_.panels) {
       if (p.legend.entries.empty()) continue;
-      p.legend.above = p.panel.legend == Legend::kAbove || p.panel.polar || !inside(p);
+      p.legend.outside = p.panel.legend == Legend::kAbove || p.panel.polar || !inside(p);
     }
   }
 
@@ -310,10 +323,13 @@ class Planner {
   void finish_legend(PanelPlan& p) {
     if (p.legend.entries.empty()) return;
     // A strip above another panel of the row may have moved this one.
-    if (!p.legend.above && inside(p)) return;
-    const float height = legend_height_px(lines_above(p), plan_.text_pt);
-    const float bottom = p.plot.top - 3 * plan_.pt - (p.panel.polar ? 14 * plan_.text_pt : 0);
-    if (p.legend.above) p.legend.box = {p.plot.left, bottom - height, p.plot.right, bottom};
+    if (!p.legend.outside && inside(p)) return;
+    if (!p.legend.outside) return;
+    const float height = legend_height_px(lines_outside(p), plan_.text_pt), gap = 3 * plan_.pt;
+    const float top = p.panel.polar ? p.plot.top + std::min(p.plot.width(), p.plot.height()) + gap +
+                                          kRimText * plan_.text_pt
+                                    : p.plot.top - gap - height;
+    p.legend.box = {p.plot.left, top, p.plot.right, top + height};
   }
 
   const Figure& figure_;

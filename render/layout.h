@@ -24,10 +24,11 @@ struct PanelPlan {
   int row = 0, column = 0;
   Margins margins;
   Rect plot;
-  float title_bottom = 0;  // titles of a row stand on one line
+  float title_bottom = 0;  // right above the plot, or the legend over it
   float label_left = 0;    // where the y labels of its column begin
   LegendPlan legend;
   const HeatMap* heat = nullptr;  // into panel.marks: gets a colour bar
+  float bar_bottom = 0;           // of that bar, which is as high as all maps that share it
 };
 
 struct FigurePlan {

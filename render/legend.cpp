@@ -118,15 +118,15 @@ std::optional<FreePlace> free_place(const PanelView& view, const std::vector<Leg
 void draw_legend(const LegendPlan& legend, const std::vector<Color>& colors, const PanelView& view) {
   if (legend.entries.empty()) return;
   const float pt = view.text_pt;
-  if (!legend.above) view.painter.fill_rect(legend.box, with_alpha(view.colors().panel, 0.85F));
-  const float pad = legend.above ? 0 : kPadding * pt;
+  if (!legend.outside) view.painter.fill_rect(legend.box, with_alpha(view.colors().panel, 0.85F));
+  const float pad = legend.outside ? 0 : kPadding * pt;
   const std::vector<float> widths = column_widths(legend.entries, legend.columns, view.fonts, pt);
   const std::vector<LegendSpot> line_by_line =
-      legend.above ? flowed(legend.entries, legend.box.width(), view.fonts, pt) : std::vector<LegendSpot>{};
+      legend.outside ? flowed(legend.entries, legend.box.width(), view.fonts, pt) : std::vector<LegendSpot>{};
   for (std::size_t i = 0; i < legend.entries.size(); ++i) {
     LegendSpot spot{pad, static_cast<int>(i / widths.size())};
     for (std::size_t c = 0; c < i % widths.size(); ++c) spot.x_px += widths[c] + kColumnGap * pt;
-    if (legend.above) spot = line_by_line[i];
+    if (legend.outside) spot = line_by_line[i];
     const float x = legend.box.left + spot.x_px;
     const float middle = legend.box.top + 0.5F * pad + (static_cast<float>(spot.line) + 0.5F) * kPitch * pt;
     const float half = 0.36F * kPitch * pt;

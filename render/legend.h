@@ -16,16 +16,15 @@ struct LegendEntry {
 
 struct LegendPlan {
   std::vector<LegendEntry> entries;
-  Rect box;            // in pixels
-  int columns = 1;     // entries side by side, inside
-  bool above = false;  // over the panel instead of inside: line by line, as many
-                       // entries as fit
+  Rect box;              // in pixels
+  int columns = 1;       // entries side by side, inside
+  bool outside = false;  // over the panel, under a polar one: line by line, as many entries as fit
 };
 
 // Of the marks that show something.
 std::vector<LegendEntry> legend_entries(const Panel& panel, float most_px, const FontBook& fonts,
                                         float text_pt);
-// Where the entries of a legend above its panel stand: x from its left, line
+// Where the entries of a legend outside its panel stand: x from its left, line
 // from the top.
 struct LegendSpot {
   float x_px = 0;

@@ -75,6 +75,17 @@ int color_number(const Mark& mark) {
       mark);
 }
 
+double ramp_of(const Mark& mark) {
+  return std::visit(
+      [](const auto& m) {
+        if constexpr (requires { m.look; })
+          return m.look.ramp;
+        else
+          return kAuto;
+      },
+      mark);
+}
+
 }  // namespace
 
 MarkExtents extents_of(const Mark& mark, Scale x_scale, Scale y_scale) {
@@ -128,6 +139,10 @@ std::vector<Color> colors_of(const std::vector<Mark>& marks, Theme theme) {
   std::vector<Color> colors;
   int next = 0;
   for (const Mark& mark : marks) {
+    if (const double ramp = ramp_of(mark); std::isfinite(ramp)) {
+      colors.push_back(ramp_color(theme, ramp));
+      continue;
+    }
     const int number = color_number(mark);
     colors.push_back(number == kInk         ? theme_colors(theme).ink
                      : number == kFaintInk  ? theme_colors(theme).faint_ink

@@ -109,7 +109,8 @@ void draw_polar_axes(const PanelPlan& p, const PanelView& v) {
 
 // Whether a sector of the panel's bars lies under a pixel.
 bool on_sector(const PanelView& v, Vec2 pixel) {
-  const double dx = static_cast<double>(pixel.x - v.centre().x), dy = static_cast<double>(v.centre().y - pixel.y);
+  const double dx = static_cast<double>(pixel.x - v.centre().x),
+               dy = static_cast<double>(v.centre().y - pixel.y);
   const double angle = std::atan2(dx, dy), share = std::hypot(dx, dy) / static_cast<double>(v.radius_px());
   for (const Mark& mark : v.panel.marks) {
     const auto* bars = std::get_if<Bars>(&mark);
@@ -122,7 +123,8 @@ bool on_sector(const PanelView& v, Vec2 pixel) {
   return false;
 }
 
-// Over the data, along one of the eight rays that compass and degree labels leave free: the one with the least data.
+// Over the data, along one of the eight rays that compass and degree labels leave free: the one with the
+// least data.
 void draw_polar_radii(const PanelPlan& p, const PanelView& v) {
   constexpr int kHidden = 6;  // as a label with all six points on data
   struct Label {
@@ -150,7 +152,8 @@ void draw_polar_radii(const PanelPlan& p, const PanelView& v) {
     Rect inner;  // the next ring's label, which flat rays bring near
     for (const Label& label : labels) {
       const Rect box = box_at(label, angle);
-      const bool apart = inner.right <= box.left || box.right <= inner.left || inner.bottom <= box.top || box.bottom <= inner.top;
+      const bool apart = inner.right <= box.left || box.right <= inner.left || inner.bottom <= box.top ||
+                         box.bottom <= inner.top;
       if (!apart) covered += kHidden;
       inner = box;
       for (const float x : {box.left, 0.5F * (box.left + box.right), box.right})
@@ -171,14 +174,12 @@ void draw_color_bar(const PanelPlan& p, const PanelView& v) {
   const ColorScale scale = color_scale_of(*p.heat);
   const float left = std::round(p.plot.right + kColorBarGap * v.pt),
               right = std::round(left + kColorBarWidth * v.pt);
-  const float height = p.plot.height(), tick_px = v.tick_text_px(), label_px = kLabelText * v.text_pt;
-  for (float y = p.plot.top; y < p.plot.bottom; ++y)
-    v.painter.fill_rect({left, y, right, y + 1}, color_of(scale.map, 1 - (y + 0.5F - p.plot.top) / height));
-  const std::array<Vec2, 5> frame = {{{left, p.plot.top},
-                                      {right, p.plot.top},
-                                      {right, p.plot.bottom},
-                                      {left, p.plot.bottom},
-                                      {left, p.plot.top}}};
+  const float top = p.plot.top, bottom = p.bar_bottom, height = bottom - top, tick_px = v.tick_text_px(),
+              label_px = kLabelText * v.text_pt;
+  for (float y = top; y < bottom; ++y)
+    v.painter.fill_rect({left, y, right, y + 1}, color_of(scale.map, 1 - (y + 0.5F - top) / height));
+  const std::array<Vec2, 5> frame = {
+      {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}};
   v.painter.stroke(frame, v.colors().ink, 0.5F * v.pt);
   const int most = std::clamp(static_cast<int>(height / (15 * v.text_pt)), 2, 12);
   const Mapping& m = scale.mapping;
@@ -186,13 +187,13 @@ void draw_color_bar(const PanelPlan& p, const PanelView& v) {
       m.scale == Scale::kLog ? log_ticks(m.low, m.high, most) : linear_ticks(m.low, m.high, most);
   float widest = 0;
   for (const Tick& t : ticks.major) {
-    const float y = crisp(p.plot.bottom - static_cast<float>(m.share(t.value)) * height);
+    const float y = crisp(bottom - static_cast<float>(m.share(t.value)) * height);
     line(v, {right, y}, {right + kTickLength * v.pt, y}, v.colors().ink, 0.6F);
     v.painter.text({right + (kTickLength + kTickGap) * v.pt, y}, t.label,
                    {.size_px = tick_px, .color = v.colors().ink, .v = VAlign::kMiddle});
     widest = std::max(widest, v.fonts.width_px(t.label, tick_px));
   }
-  v.painter.text({right + (kTickLength + kTickGap + 3) * v.pt + widest, v.centre().y},
+  v.painter.text({right + (kTickLength + kTickGap + 3) * v.pt + widest, 0.5F * (top + bottom)},
                  axis_text_fitted({.label = p.heat->label, .unit = p.heat->unit}, ticks, 1.05F * height,
                                   v.fonts, label_px),
                  {.size_px = label_px,
@@ -239,7 +240,8 @@ void draw_panel(const PanelPlan& p, const PanelView& v) {
 
 void prepare_fonts(const Figure& figure, FontBook& fonts) {
   const float pt = static_cast<float>(figure.dots_per_inch / 72 * figure.text_scale);
-  for (const float size : {kTickText, kLabelText, kSubtitleText, kNoteText}) fonts.require(size * pt, false);
+  for (const float size : {kTickText, kLabelText, kSubtitleText, kNoteText, kSmallText})
+    fonts.require(size * pt, false);
   for (const float size : {kPanelTitleText, kTitleText}) fonts.require(size * pt, true);
   fonts.require(figure.title);
   fonts.require(figure.subtitle);

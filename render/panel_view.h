@@ -43,7 +43,11 @@ struct PanelView {
   const ThemeColors& colors() const { return theme_colors(theme); }
   float tick_text_px() const { return 7.5F * text_pt; }
 
-  Vec2 centre() const { return {0.5F * (plot.left + plot.right), 0.5F * (plot.top + plot.bottom)}; }
+  // A rose stands under its title.
+  Vec2 centre() const {
+    return {0.5F * (plot.left + plot.right),
+            panel.polar ? plot.top + radius_px() : 0.5F * (plot.top + plot.bottom)};
+  }
   float radius_px() const { return 0.5F * std::min(plot.width(), plot.height()); }
   // Polar: angle clockwise from the top.
   Vec2 polar_at(double angle_rad, float distance_px) const {
@@ -58,6 +62,6 @@ struct PanelView {
 
 // Text sizes in points.
 inline constexpr float kTickText = 7.5F, kLabelText = 8.5F, kPanelTitleText = 9.0F, kTitleText = 11.0F,
-                       kSubtitleText = 8.5F, kNoteText = 7.5F;
+                       kSubtitleText = 8.5F, kNoteText = 7.5F, kSmallText = 6.0F;
 
 }  // namespace waverig::render

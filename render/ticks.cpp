@@ -45,6 +45,12 @@ std::string number_text(double value, int decimals) {
   return text;
 }
 
+std::string significant_text(double value, int digits) {
+  const double size = std::abs(value);
+  return number_text(value,
+                     size > 0 ? std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size)))) : 0);
+}
+
 std::string power_of_ten_text(int exponent) {
   static constexpr std::array<const char*, 10> kSuperscript = {
       "\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074", "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
@@ -91,9 +97,10 @@ Ticks linear_ticks(double low, double high, int most) {
 Ticks log_ticks(double low, double high, int most) {
   Ticks ticks;
   const double first = std::ceil(std::log10(low) - kSlack), last = std::floor(std::log10(high) + kSlack);
-  const auto label = [](double value) {
+  const bool plain = low >= 1e-3 * (1 - kSlack) && high < 1e5;  // one notation an axis
+  const auto label = [&](double value) {
     const int exponent = static_cast<int>(std::floor(std::log10(value) + kSlack));
-    if (exponent >= -3 && exponent <= 4) return number_text(value, std::max(0, -exponent));
+    if (plain) return number_text(value, std::max(0, -exponent));
     const double mantissa = value / std::pow(10.0, exponent);
     return (mantissa > 1.5 ? number_text(mantissa, 0) + "\u00B7" : "") + power_of_ten_text(exponent);
   };

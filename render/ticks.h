@@ -31,6 +31,8 @@ double nice_step(double range, int most);
 // A number for people: decimals as given, thin-minus replaced by U+2212, no
 // negative zero.
 std::string number_text(double value, int decimals);
+// The same with at least so many significant digits.
+std::string significant_text(double value, int digits);
 // "10⁻³"
 std::string power_of_ten_text(int exponent);
 

@@ -17,8 +17,8 @@ bool shows_published(const evaluation::CampaignResults& results);
 Figure error_map_figure(const evaluation::CampaignResults& results);
 Figure std_map_figure(const evaluation::CampaignResults& results);
 
-// Gain and phase against period as on a buoy's calibration sheet, with bands of
-// k = 2 standard uncertainties of the mean.
+// Gain and phase against period as on a buoy's calibration sheet, with the scatter between the runs of a
+// period.
 Figure frequency_response_figure(const evaluation::CampaignResults& results);
 
 // Single waves, estimated against true.

@@ -32,9 +32,10 @@ Panel rose_panel(std::string title, const std::vector<double>& directions_rad,
   for (std::size_t c = 0; c < kClasses; ++c) {
     const double from = static_cast<double>(c) * step, to = from + step;
     if (c > 0 && from >= highest) break;
-    const bool last = to >= highest || c + 1 == kClasses;  // the highest sea is its own class's upper edge, too
+    const bool last =
+        to >= highest || c + 1 == kClasses;  // the highest sea is its own class's upper edge, too
     Bars bars{.name = fmt::format("Hm0 {:g} to {:g} m", from, to),
-              .look = {.color = static_cast<int>(c)},
+              .look = {.ramp = static_cast<double>(c) / (kClasses - 1)},
               .width = 0.9 * kSector};
     std::array<double, kSectors> share{};
     bool any = false;

@@ -48,8 +48,8 @@ Figure maps_figure(std::string title, std::string subtitle, std::vector<Panel> p
     auto& map = std::get<HeatMap>(panels[i].marks.front());
     map.low = low;
     map.high = high;
-    // One bar serves a row.
-    map.color_bar = (i + 1) % static_cast<std::size_t>(figure.columns) == 0 || i + 1 == panels.size();
+    // One bar serves them all, at the right end of the first row.
+    map.color_bar = i + 1 == std::min(panels.size(), static_cast<std::size_t>(figure.columns));
     if (i % static_cast<std::size_t>(figure.columns) != 0) panels[i].y.label = panels[i].y.unit = "";
   }
   figure.panels = std::move(panels);
@@ -71,8 +71,7 @@ Figure error_map_figure(const CampaignResults& results) {
     for (const Setting& s : settings)
       if (std::isfinite(value(s))) most = std::max(most, std::abs(value(s)));
     panels.push_back(map_panel(
-        grid, method, {.label = "Error of the mean", .unit = "%", .map = ColorMap::kDiverging, .decimals = 2},
-        value));
+        grid, method, {.label = "Error", .unit = "%", .map = ColorMap::kDiverging, .decimals = 2}, value));
   }
   return maps_figure("Error of the mean wave height",
                      "mean less set height, in percent of the set height; one "
@@ -96,8 +95,7 @@ Figure std_map_figure(const CampaignResults& results) {
     }
     if (found)
       panels.push_back(
-          map_panel(grid, title,
-                    {.label = "Standard deviation", .unit = "cm", .log_colors = true, .decimals = 2}, value));
+          map_panel(grid, title, {.label = "Std", .unit = "cm", .log_colors = true, .decimals = 3}, value));
   };
   const std::vector<std::string> methods = methods_of(results);
   for (const std::string& method : methods) {
@@ -136,7 +134,7 @@ Figure sea_heave_map_figure(const CampaignResults& results) {
       }
     }
     panels.push_back(map_panel(
-        grid, method, {.label = "RMS error", .unit = "% of Hm0", .log_colors = true, .decimals = 2}, value));
+        grid, method, {.label = "Error", .unit = "% of Hm0", .log_colors = true, .decimals = 3}, value));
     panels.back().x.label = "Set peak period";
     panels.back().y.label = "Set Hm0";
   }

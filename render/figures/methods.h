@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "render/figure.h"
+
 namespace waverig::render {
 
 inline constexpr const char* kBaselineMethod = "lee2014";  // what was published comes first
@@ -13,5 +15,9 @@ inline std::vector<std::string> in_order(std::vector<std::string> methods) {
                         [](const std::string& m) { return m == kBaselineMethod; });
   return methods;
 }
+
+// Methods that tell the very same, as two that publish one heave do, are drawn once and named together: the
+// later would cover the earlier.
+void draw_same_once(std::vector<Mark>& marks);
 
 }  // namespace waverig::render

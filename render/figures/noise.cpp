@@ -10,6 +10,8 @@
 
 #include "estimator/calibration/allan.h"
 #include "render/figures/methods.h"
+#include "render/figures/run_time.h"
+#include "render/ticks.h"
 
 namespace waverig::render {
 namespace {
@@ -51,9 +53,8 @@ double deviation_of(const estimator::AllanTerms& t, double tau_s) {
 }
 
 struct Quantity {
-  const char *title, *unit, *noise_unit, *bias_unit;
-  double scale,
-      noise_scale;  // from SI to the axis and to the terms in the legend
+  const char *title, *unit, *noise_unit;
+  double scale;  // from SI to the axis and to the terms in the legend
 };
 
 Panel allan_panel(const std::vector<RestRecord>& records, const Quantity& q) {
@@ -80,10 +81,10 @@ Panel allan_panel(const std::vector<RestRecord>& records, const Quantity& q) {
       fit.x.push_back(p.tau_s);
       fit.y.push_back(q.scale * deviation_of(terms, p.tau_s));
     }
-    std::string name = fmt::format("{}: {:.3g} {}", kAxisNames[axis],
-                                   q.noise_scale * terms.one_sided_density(), q.noise_unit);
+    std::string name = fmt::format("{}: N {} {}", kAxisNames[axis],
+                                   significant_text(q.scale * terms.one_sided_density(), 3), q.noise_unit);
     if (terms.bias_instability > 0)
-      name += fmt::format(", B {:.2g} {}", q.noise_scale * terms.bias_instability, q.bias_unit);
+      name += fmt::format(", B {} {}", significant_text(q.scale * terms.bias_instability, 2), q.unit);
     measured.name = fit.name = name;
     panel.marks.emplace_back(std::move(band));
     panel.marks.emplace_back(std::move(fit));
@@ -109,6 +110,14 @@ Spectrum banded(const Spectrum& s) {
     out.density_rthz.push_back(std::sqrt(power / static_cast<double>(n)));
   }
   return out;
+}
+
+// Where the axis of a spectrum begins. A simulated truth falls by ten decades and more: what counts is near
+// its peak.
+double least_density(const std::vector<double>& truth) {
+  constexpr double kShown = 1e-6;  // of the peak
+  const auto [least, most] = std::ranges::minmax_element(truth);
+  return least != truth.end() && *least < kShown * *most ? kShown * *most : kAuto;
 }
 
 }  // namespace
@@ -149,20 +158,19 @@ Figure allan_figure(const RestRecords& rest) {
   double longest_s = 0;
   for (const RestRecord& r : rest.specific_force_mps2)
     longest_s = std::max(longest_s, r.interval_s * static_cast<double>(r.axes[0].size()));
-  Figure figure{.title = "Allan deviation of the sensors at rest",
-                .subtitle = fmt::format("calibrated samples, {} record{} of {:.0f} s; bands: one standard "
-                                        "deviation; lines: fitted noise",
-                                        rest.specific_force_mps2.size(),
-                                        rest.specific_force_mps2.size() == 1 ? "" : "s", longest_s),
-                .columns = 2,
-                .height_mm = 100};
+  Figure figure{
+      .title = "Allan deviation of the sensors at rest",
+      .subtitle = fmt::format("calibrated samples, {} record{} of {:.0f} s; bands: one standard deviation; "
+                              "lines: fitted noise, N its one-sided white density, B its bias instability",
+                              rest.specific_force_mps2.size(),
+                              rest.specific_force_mps2.size() == 1 ? "" : "s", longest_s),
+      .columns = 2,
+      .height_mm = 100};
   constexpr double kMicroG = kStandardGravity * 1e-6;
-  figure.panels.push_back(
-      allan_panel(rest.specific_force_mps2,
-                  {"(a) Accelerometer", "m/s\u00B2", "\u00B5g/\u221AHz", "\u00B5g", 1, 1 / kMicroG}));
-  figure.panels.push_back(allan_panel(
-      rest.angular_rate_radps,
-      {"(b) Gyroscope", "\u00B0/s", "(\u00B0/s)/\u221AHz", "\u00B0/s", 1 / kDegree, 1 / kDegree}));
+  figure.panels.push_back(allan_panel(rest.specific_force_mps2,
+                                      {"(a) Accelerometer", "\u00B5g", "\u00B5g/\u221AHz", 1 / kMicroG}));
+  figure.panels.push_back(allan_panel(rest.angular_rate_radps,
+                                      {"(b) Gyroscope", "\u00B0/s", "(\u00B0/s)/\u221AHz", 1 / kDegree}));
   return figure;
 }
 
@@ -199,9 +207,7 @@ Spectrum welch(std::span<const double> values, double interval_s, std::size_t bl
 
 Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz) {
   Figure figure{.title = "Spectra of the steady part",
-                .subtitle = fmt::format("wave period {:g} s, wave height {:g} cm, repeat {}; Hann "
-                                        "blocks of ten periods, means over 1/12 octave",
-                                        run.period_s, run.height_m / kCentimetre, run.repeat + 1),
+                .subtitle = setting_text(run) + "; Hann blocks of ten periods, means over 1/12 octave",
                 .columns = 2,
                 .height_mm = 100};
   const auto steady = [&](std::int64_t utime) {
@@ -243,7 +249,7 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
       last = sample.utime;
       values.push_back(sample.heave_m);
     }
-    if (values.size() < 16) return;
+    if (values.size() < 16) return Spectrum{};
     const double dt =
         static_cast<double>(last - first) * kMicrosecond / static_cast<double>(values.size() - 1);
     const Spectrum s = banded(welch(values, dt, block_of(dt)));
@@ -251,13 +257,15 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
                                   .y = s.density_rthz,
                                   .name = name,
                                   .look = {.color = color, .width_pt = 0.9, .dash = dash}});
+    return s;
   };
   std::vector<std::string> methods;
   for (const auto& [method, samples] : run.heave) methods.push_back(method);
   int color = 0;
   for (const std::string& method : in_order(methods))
     add(method, color++, run.heave.at(method), Dash::kSolid);
-  add("truth", kInk, run.truth, Dash::kDashed);
+  draw_same_once(heave.marks);
+  heave.y.low = least_density(add("truth", kInk, run.truth, Dash::kDashed).density_rthz);
   force.legend = heave.legend = Legend::kAbove;
   figure.panels = {std::move(force), std::move(heave)};
   return figure;

@@ -14,12 +14,6 @@
 namespace waverig::render {
 namespace {
 
-std::string setting_text(const evaluation::RunRecord& run) {
-  return fmt::format("{} {:g} s, {} {:g} cm, repeat {}", is_on_sea(run) ? "peak period" : "wave period",
-                     run.period_s, is_on_sea(run) ? "Hm0" : "wave height", run.height_m / kCentimetre,
-                     run.repeat + 1);
-}
-
 // More waves than these make a scribble of a trace.
 double shown_end_s(const evaluation::RunRecord& run, double end_s) {
   constexpr double kMostPeriods = 60;

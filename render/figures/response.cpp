@@ -5,6 +5,7 @@
 #include <map>
 
 #include "render/figures/accuracy.h"
+#include "render/figures/methods.h"
 #include "render/figures/settings.h"
 
 namespace waverig::render {
@@ -23,18 +24,32 @@ struct Spread {
     squares += v * v;
   }
   double mean() const { return n > 0 ? sum / n : kAuto; }
-  double sigma_of_mean() const {
-    return n > 1 ? std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1)) / n) : 0;
+  // Unknown of a single one.
+  double deviation() const {
+    return n > 1 ? std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1))) : kAuto;
   }
 };
+
+// A trace that ran away from the truth has neither gain nor phase: least squares would tell its drift.
+bool follows(const RunResult& run) { return run.heave_rmse_m < 0.25 * run.height_m; }
+
+double gain_of(const RunResult& run) {
+  const evaluation::HeightStatistics& s = run.statistics;
+  if (s.waves > 0) return s.mean_height_m / s.mean_true_height_m;
+  return follows(run) ? run.heave_gain : kAuto;
+}
+
+double phase_deg(const RunResult& run) {
+  return follows(run) ? -360 * run.heave_lag_s / run.period_s : kAuto;
+}
 
 }  // namespace
 
 Figure frequency_response_figure(const CampaignResults& results) {
   Figure figure{.title = "Frequency response",
                 .subtitle =
-                    "mean over the runs of a period; bands and bars: k "
-                    "= 2 standard uncertainties of the mean",
+                    "mean over the runs of a period; bars: standard deviation between those runs, which "
+                    "differ in height",
                 .share_x = true,
                 .height_mm = 120};
   const Axis period{.label = "Wave period", .unit = "s", .padding = 0.08};
@@ -54,47 +69,40 @@ Figure frequency_response_figure(const CampaignResults& results) {
   const auto add = [](Panel& panel, const std::map<double, Spread>& by_period, const std::string& name,
                       int color) {
     Line line{.name = name, .look = {.color = color, .marker = Marker::kCircle, .marker_pt = 4}};
-    Band band{.look = {.color = color, .alpha = 0.18}};
     ErrorBars bars{.look = {.color = color, .width_pt = 0.8}};
     for (const auto& [period_s, spread] : by_period) {
-      if (spread.n < 1) continue;
-      const double u = 2 * spread.sigma_of_mean();
       line.x.push_back(period_s);
-      line.y.push_back(spread.mean());
-      band.x.push_back(period_s);
-      band.low.push_back(spread.mean() - u);
-      band.high.push_back(spread.mean() + u);
-      bars.minus.push_back(u);
-      bars.plus.push_back(u);
+      line.y.push_back(spread.mean());  // unknown where no run tells it: the line breaks
+      bars.minus.push_back(spread.deviation());
+      bars.plus.push_back(spread.deviation());
     }
-    if (line.x.empty()) return;
     bars.x = line.x;
     bars.y = line.y;
-    panel.marks.emplace_back(std::move(band));
-    panel.marks.emplace_back(std::move(bars));
-    panel.marks.emplace_back(std::move(line));
+    const bool any = std::ranges::any_of(line.y, [](double y) { return std::isfinite(y); });
+    if (any) {
+      panel.marks.emplace_back(std::move(bars));
+      panel.marks.emplace_back(std::move(line));
+    }
+    return any;
   };
   std::string without_phase;
   for (std::size_t m = 0; m < methods.size(); ++m) {
     std::map<double, Spread> gains, phases;
     for (const RunResult& run : results.runs) {
       if (run.method != methods[m]) continue;
-      const evaluation::HeightStatistics& s = run.statistics;
-      const double ratio = s.waves > 0 ? s.mean_height_m / s.mean_true_height_m : run.heave_gain;
-      gains[run.period_s].add(ratio);
-      // A trace that ran away from the truth has no phase.
-      if (run.heave_rmse_m < 0.25 * run.height_m)
-        phases[run.period_s].add(-360 * run.heave_lag_s / run.period_s);
+      gains[run.period_s].add(gain_of(run));
+      phases[run.period_s].add(phase_deg(run));
     }
     add(gain, gains, methods[m], static_cast<int>(m));
-    add(phase, phases, methods[m], static_cast<int>(m));
-    if (phases.empty()) without_phase += (without_phase.empty() ? "" : ", ") + methods[m];
+    if (!add(phase, phases, methods[m], static_cast<int>(m)))
+      without_phase += (without_phase.empty() ? "" : ", ") + methods[m];
   }
   if (!without_phase.empty())
     phase.marks.emplace_back(Note{.x = 0.01,
                                   .y = 0.97,
                                   .text = "no phase, for its heave drifts: " + without_phase,
                                   .color = kFaintInk});
+  for (Panel* panel : {&gain, &phase}) draw_same_once(panel->marks);
   figure.panels = {std::move(gain), std::move(phase)};
   return figure;
 }

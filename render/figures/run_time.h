@@ -1,6 +1,9 @@
 // What the figures of a single run ask of its record.
 #pragma once
+#include <fmt/format.h>
+
 #include <cmath>
+#include <string>
 
 #include "estimator/evaluation/run_record.h"
 
@@ -13,6 +16,12 @@ inline double since_start_s(const evaluation::RunRecord& run, std::int64_t utime
 // A buoy on an irregular sea instead of the rig's arm: the set period and height are Tp and Hm0.
 inline bool is_on_sea(const evaluation::RunRecord& run) {
   return !run.truth.empty() && !std::isfinite(run.truth.front().arm_angle_rad);
+}
+
+inline std::string setting_text(const evaluation::RunRecord& run) {
+  return fmt::format("{} {:g} s, {} {:g} cm, repeat {}", is_on_sea(run) ? "peak period" : "wave period",
+                     run.period_s, is_on_sea(run) ? "Hm0" : "wave height", run.height_m / kCentimetre,
+                     run.repeat + 1);
 }
 
 }  // namespace waverig::render

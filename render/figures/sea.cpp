@@ -108,10 +108,7 @@ Figure sea_trace_figure(const evaluation::RunRecord& run) {
                end_s = since_start_s(run, run.steady_end_utime);
   const double shown_s = std::min(kShownPeriods * run.period_s, end_s - begin_s);
   const double from_s = 0.5 * (begin_s + end_s - shown_s), to_s = from_s + shown_s;
-  Figure figure{.title = "Heave on an irregular sea",
-                .subtitle = fmt::format("peak period {:g} s, Hm0 {:g} cm, repeat {}", run.period_s,
-                                        cm(run.height_m), run.repeat + 1),
-                .height_mm = 130};
+  Figure figure{.title = "Heave on an irregular sea", .subtitle = setting_text(run), .height_mm = 130};
   Panel trace{.title = "(a) Some waves",
               .x = {.label = "Time since the start of the record", .unit = "s", .low = from_s, .high = to_s},
               .y = {.label = "Heave", .unit = "cm"},
@@ -148,6 +145,7 @@ Figure sea_trace_figure(const evaluation::RunRecord& run) {
     trace.marks.emplace_back(std::move(shown));
     error.marks.emplace_back(std::move(off));
   }
+  for (Panel* panel : {&trace, &error}) draw_same_once(panel->marks);
   Line truth{.name = "truth", .look = {.color = kInk, .width_pt = 1.1, .dash = Dash::kDashed}};
   for (const evaluation::TruthSample& sample : run.truth) {
     const double t = since_start_s(run, sample.utime);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/figures/accuracy.h"
+#include "render/figures/methods.h"
 #include "render/figures/settings.h"
 #include "render/marks.h"
 
@@ -68,6 +69,7 @@ Figure single_waves_figure(const CampaignResults& results) {
     against.marks.emplace_back(std::move(points));
     residual.marks.emplace_back(std::move(errors));
   }
+  for (Panel* panel : {&against, &residual}) draw_same_once(panel->marks);
   if (!heights.empty()) {
     const double room = 0.08 * (heights.high - heights.low) + 1;
     against.marks.emplace_back(Line{.x = {heights.low - room, heights.high + room},

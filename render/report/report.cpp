@@ -119,9 +119,9 @@ std::string figures_section(const fs::path& directory) {
 
 std::string budget_section(const CampaignResults& results) {
   HtmlTable table(
-      "Contributions to the standard uncertainty of the mean height, in mm (k "
-      "= 1). Type A: from the "
-      "repeats; B: from what is known beforehand.",
+      std::string("Contributions to the standard uncertainty of the mean height, in mm (k = 1). Type A: from the "
+                  "scatter of single waves") +
+          (are_seas(results) ? ", which on a sea is mostly its own" : "") + "; B: from what is known beforehand.",
       {"Period s", "Height cm", "Method", "Contribution", "Type", "mm"});
   for (const CellResult& cell : results.cells) {
     for (const evaluation::Contribution& part : cell.statistics.budget)
@@ -132,8 +132,8 @@ std::string budget_section(const CampaignResults& results) {
   if (table.empty()) return "";
   return "<section id=\"budget\"><h2>Uncertainty budget</h2>\n<p>Combined in "
          "squares, times two: the "
-         "expanded uncertainty U of the table "
-         "above.</p>\n<details><summary>All "
+         "expanded uncertainty " + std::string(are_seas(results) ? "in <code>results.csv</code>" : "U of the table "
+         "above") + ".</p>\n<details><summary>All "
          "contributions</summary><div>" +
          table.html() + "</div></details></section>\n";
 }

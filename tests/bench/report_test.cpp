@@ -57,6 +57,8 @@ TEST(BenchReport, HoldsFiguresResultsInstrumentsAndFiles) {
                            "Every step succeeded at its first attempt"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
 
+  EXPECT_EQ(closure_figure(analysis).panels.size(), 1U) << "no panel of channels that the unit has none of";
+
   const std::vector<std::string> csv = lines_of(channels_csv(analysis));
   ASSERT_EQ(csv.size(), 3U);   // a header and two channels
   EXPECT_TRUE(csv[1].starts_with("gyro_2,3e-08,"));

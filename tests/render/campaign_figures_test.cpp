@@ -11,7 +11,9 @@
 #include "render/figures/calibration.h"
 #include "render/figures/direction.h"
 #include "render/figures/methods.h"
+#include "render/figures/noise.h"
 #include "render/figures/sea.h"
+#include "render/marks.h"
 #include "tests/render/example_campaign.h"
 #include "tests/render/picture.h"
 
@@ -279,6 +281,69 @@ TEST(CampaignFigures, BudgetsShareAScaleOnlyWhereBothCanBeRead) {
   EXPECT_FALSE(apart.share_x);
   EXPECT_GT(std::abs(std::log(apart.panels[0].x.high / apart.panels[1].x.high)), std::log(5.0));
   EXPECT_NE(apart.subtitle.find("a scale of its own"), std::string::npos);
+}
+
+TEST(CampaignFigures, BudgetsOfSeasLeaveOutHowTheSeasWavesDiffer) {
+  const auto rows_of = [](evaluation::CampaignResults results) {
+    for (auto& cell : results.cells) cell.statistics.budget.push_back({"frequency", 0, 'B'});
+    return uncertainty_budget_figure(results).panels.at(0).y.categories;
+  };
+  EXPECT_EQ(rows_of(test::example_campaign()), (std::vector<std::string>{"combined", "calibration (B)", "noise (A)"}))
+      << "a row of nothing stands in none";
+  EXPECT_EQ(rows_of(test::example_sea_campaign()), (std::vector<std::string>{"combined", "calibration (B)"}));
+}
+
+TEST(CampaignFigures, BudgetsNameEverySettingThatAnyMethodHas) {
+  evaluation::CampaignResults results = test::example_campaign();
+  std::erase_if(results.cells,
+                [](const auto& c) { return c.method == "lee2014" && (c.period_s > 6 || c.height_m > 0.6); });
+  const Figure figure = uncertainty_budget_figure(results);
+  ASSERT_EQ(figure.panels.at(0).title, "lee2014");
+  std::vector<std::string> named;
+  for (const Mark& mark : figure.panels[0].marks) {
+    EXPECT_TRUE(extents_of(mark, Scale::kLinear, Scale::kLinear).has_data) << "or the legend leaves it out";
+    named.push_back(name_of(mark));
+  }
+  EXPECT_EQ(named, (std::vector<std::string>{"6 s, 60 cm", "6 s, 100 cm", "12 s, 60 cm", "12 s, 100 cm"}));
+}
+
+// Of a panel's line with that name.
+const Line* line_of(const Panel& panel, const std::string& name) {
+  for (const Mark& mark : panel.marks) {
+    if (const auto* line = std::get_if<Line>(&mark); line != nullptr && line->name == name) return line;
+  }
+  return nullptr;
+}
+
+TEST(FrequencyResponse, HasNoGainOfATraceThatRanAwayAndNoScatterOfOneRun) {
+  evaluation::CampaignResults results = test::example_campaign();
+  std::erase_if(results.runs, [](const auto& r) { return r.repeat > 0 || r.height_m != 0.6; });
+  for (auto& run : results.runs) {
+    if (run.method != "lee2014" || run.period_s < 12) continue;
+    run.statistics.waves = 0;
+    run.heave_gain = 103;
+  }
+  const Figure figure = frequency_response_figure(results);
+  const Line* line = line_of(figure.panels.at(0), "lee2014");
+  ASSERT_NE(line, nullptr);
+  ASSERT_EQ(line->y.size(), 2U);
+  EXPECT_NEAR(line->y[0], 1, 0.1);
+  EXPECT_TRUE(std::isnan(line->y[1])) << line->y[1];
+  for (const Mark& mark : figure.panels[0].marks) {
+    const auto* bars = std::get_if<ErrorBars>(&mark);
+    if (bars == nullptr) continue;
+    for (const double length : bars->plus) EXPECT_TRUE(std::isnan(length)) << length;
+  }
+}
+
+TEST(SeaTrace, MethodsThatTellTheSameHeaveAreOneLine) {
+  evaluation::RunRecord run = test::example_sea_run();
+  run.heave["spectral"] = run.heave["harmonic"];
+  const Figure trace = sea_trace_figure(run), spectra = spectra_figure(run, kAuto);
+  EXPECT_NE(line_of(trace.panels.at(0), "harmonic, spectral"), nullptr);
+  EXPECT_EQ(trace.panels.at(1).marks.size(), 2U);
+  EXPECT_NE(line_of(spectra.panels.at(1), "harmonic, spectral"), nullptr);
+  EXPECT_NE(spectra.subtitle.find("peak period"), std::string::npos) << spectra.subtitle;
 }
 
 }  // namespace

@@ -84,6 +84,29 @@ TEST(Layout, RowsTakeTheirShareOfTheHeight) {
   EXPECT_NEAR(plan.panels[0].plot.height() / plan.panels[1].plot.height(), 3, 0.05);
 }
 
+TEST(Layout, TitlesStandRightAboveTheirPlotOrItsLegend) {
+  Figure figure{.columns = 2};
+  Panel many{.title = "many", .legend = Legend::kAbove}, one{.title = "one", .marks = {Line{.x = {0, 1}, .y = {0, 1}}}};
+  for (int i = 0; i < 12; ++i)
+    many.marks.emplace_back(Line{.x = {0, 1}, .y = {0, 1}, .name = "a long name of series " + std::to_string(i)});
+  figure.panels = {many, one};
+  FontBook fonts;
+  const FigurePlan plan = plan_of(figure, fonts);
+  EXPECT_GT(plan.panels[0].legend.box.height(), 30);
+  EXPECT_LT(std::abs(plan.panels[0].legend.box.top - plan.panels[0].title_bottom), 10);
+  EXPECT_LT(std::abs(plan.panels[1].plot.top - plan.panels[1].title_bottom), 10);
+}
+
+TEST(Layout, OneColourBarIsAsHighAsTheMapsItServes) {
+  Figure figure{.columns = 2};
+  for (int i = 0; i < 3; ++i)
+    figure.panels.push_back(
+        {.marks = {HeatMap{.x_edges = {0, 1}, .y_edges = {0, 1}, .values = {1}, .color_bar = i == 1}}});
+  FontBook fonts;
+  const FigurePlan plan = plan_of(figure, fonts);
+  EXPECT_EQ(plan.panels[1].bar_bottom, plan.panels[2].plot.bottom);
+}
+
 TEST(Layout, EqualScalesMakeACircleRound) {
   Figure figure{.width_mm = 150, .height_mm = 60};
   figure.panels.push_back({.marks = {Line{.x = {-1, 1}, .y = {-1, 1}}}, .equal_scales = true});
@@ -106,7 +129,7 @@ TEST(Legend, HidesNoDataAndStaysInThePanel) {
     FontBook fonts;
     const FigurePlan plan = plan_of(figure, fonts);
     const PanelPlan& p = plan.panels[0];
-    ASSERT_FALSE(p.legend.above);
+    ASSERT_FALSE(p.legend.outside);
     EXPECT_GE(p.legend.box.left, p.plot.left);
     EXPECT_LE(p.legend.box.right, p.plot.right);
     Occupancy data(p.plot, 2, fonts);
@@ -125,7 +148,7 @@ TEST(Legend, GoesAboveWhereDataFillThePanel) {
   figure.panels.push_back({.marks = {line}});
   FontBook fonts;
   const PanelPlan p = plan_of(figure, fonts).panels[0];
-  EXPECT_TRUE(p.legend.above);
+  EXPECT_TRUE(p.legend.outside);
   EXPECT_LE(p.legend.box.bottom, p.plot.top);
 }
 

@@ -63,6 +63,19 @@ TEST(LogTicks, StandOnDecades) {
   EXPECT_EQ(labels(log_ticks(1e-9, 1e-6, 8)).front(), "10\u207B\u2079");
 }
 
+TEST(LogTicks, KeepToOneNotationOnAnAxis) {
+  EXPECT_EQ(labels(log_ticks(1e-5, 10, 8)).back(), "10\u00B9");
+  EXPECT_EQ(labels(log_ticks(1e-5, 10, 8)).front(), "10\u207B\u2075");
+}
+
+TEST(NumberText, KeepsTheDigitsThatCount) {
+  EXPECT_EQ(significant_text(1.46, 2), "1.5");
+  EXPECT_EQ(significant_text(0.0413, 2), "0.041");
+  EXPECT_EQ(significant_text(123.4, 2), "123");
+  EXPECT_EQ(significant_text(-0.5, 2), "\u22120.50");
+  EXPECT_EQ(significant_text(0, 2), "0");
+}
+
 TEST(LogTicks, FallBackToOneTwoFiveWithinADecade) {
   EXPECT_EQ(labels(log_ticks(0.9, 6, 6)), (std::vector<std::string>{"1", "2", "5"}));
 }

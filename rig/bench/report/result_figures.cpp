@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
@@ -93,21 +92,18 @@ Figure scale_factor_figure(const Analysis& analysis) {
 
 Figure closure_figure(const Analysis& analysis) {
   Figure figure{.title = "Closure: what the fits leave over", .subtitle = "Fitted less commanded or metered current, of each level, at all temperatures",
-                .columns = kColumns, .height_mm = 85};
-  std::vector<double> limits;   // one panel for each kind of channel, which differ in their levels
-  std::array<Panel, 2> panels;
-  std::array<const char*, 2> kinds = {"gyro", "accel"};
-  for (std::size_t k = 0; k < kinds.size(); ++k) {
-    Panel& panel = panels[k];
-    panel = {.title = fmt::format("{} channels", kinds[k]),
-             .x = {.label = "Level", .unit = "mA", .scale = render::Scale::kLog},
-             .y = {.label = "Residual", .unit = "ppm"}, .legend = Legend::kAbove};
+                .height_mm = 85};
+  // One panel for each kind of channel, which differ in their levels.
+  for (const char* kind : {"gyro", "accel"}) {
+    Panel panel{.title = fmt::format("{} channels", kind),
+                .x = {.label = "Level", .unit = "mA", .scale = render::Scale::kLog},
+                .y = {.label = "Residual", .unit = "ppm"}, .legend = Legend::kAbove};
     for (const int polarity : {1, -1, 0}) {
       Points points{.name = polarity > 0 ? "positive" : polarity < 0 ? "negative" : "both in one row",
                     .look = {.color = polarity < 0 ? 1 : 0, .marker = polarity < 0 ? render::Marker::kHollowCircle : render::Marker::kCircle,
                              .marker_pt = 3, .alpha = 0.7}};
       for (const ChannelAnalysis& measured : analysis.channels) {
-        if (!measured.channel.starts_with(kinds[k])) continue;
+        if (!measured.channel.starts_with(kind)) continue;
         for (const auto& p : measured.scale_factors)
           for (const estimator::RowResidual& r : p.factors.residuals) {
             if (r.polarity != polarity) continue;
@@ -117,9 +113,11 @@ Figure closure_figure(const Analysis& analysis) {
       }
       if (!points.x.empty()) panel.marks.emplace_back(std::move(points));
     }
+    if (panel.marks.empty()) continue;   // a unit without such channels
     panel.marks.emplace_back(render::Rule{.at = 0});
-    figure.panels.push_back(panel);
+    figure.panels.push_back(std::move(panel));
   }
+  figure.columns = std::clamp(static_cast<int>(figure.panels.size()), 1, kColumns);
   return figure;
 }
 
