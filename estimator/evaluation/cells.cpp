@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
+
+#include "lcmtypes/flags.h"
 
 namespace waverig::evaluation {
 
@@ -31,6 +34,20 @@ double CellPooling::MeanAngle::value() const {
   if (!(std::hypot(north.value(), east.value()) > kNone)) return estimator::kUnknown;
   const double angle_rad = std::atan2(east.value(), north.value());
   return angle_rad < 0 ? angle_rad + 360 * kDegree : angle_rad;
+}
+
+void CellPooling::MeanResponse::add(const RunResult& run) {
+  const double lag_rad = 2 * std::numbers::pi * run.heave_lag_s / run.true_tm02_s;
+  if (!std::isfinite(run.heave_gain) || !std::isfinite(lag_rad)) return;
+  in_phase.add(run.heave_gain * std::cos(lag_rad));
+  late.add(run.heave_gain * std::sin(lag_rad));
+  period_s.add(run.true_tm02_s);
+}
+
+double CellPooling::MeanResponse::gain() const { return std::hypot(in_phase.value(), late.value()); }
+
+double CellPooling::MeanResponse::lag_s() const {
+  return std::atan2(late.value(), in_phase.value()) * period_s.value() / (2 * std::numbers::pi);
 }
 
 void CellPooling::MeanSea::add(const JudgedSea& judged) {
@@ -89,14 +106,15 @@ void CellPooling::add(const RunResult& run) {
   cell_.period_s = run.period_s;
   cell_.height_m = run.height_m;
   cell_.method = run.method;
+  cell_.motion = run.motion;
   for (const JudgedWave& wave : run.waves) heights_.add(wave);
   heights_.close_record();
   bound_square_.add(run.statistics.bound_std_m * run.statistics.bound_std_m);
   heave_square_.add(run.heave_rmse_m * run.heave_rmse_m);
   heave_bound_square_.add(run.heave_bound_m * run.heave_bound_m);
   true_hm0_.add(run.true_hm0_m);
-  gain_.add(run.heave_gain);
-  lag_.add(run.heave_lag_s);
+  response_.add(run);
+  flags_ |= run.statistics.flags & flag::kGap;
   sigma_ratio_.add(run.heave_sigma_ratio);
   for (const JudgedSea& sea : run.seas) {
     sea_.add(sea);
@@ -111,8 +129,9 @@ void CellPooling::close() {
   cell_.heave_rmse_m = std::sqrt(heave_square_.value());
   cell_.heave_bound_m = std::sqrt(heave_bound_square_.value());
   cell_.true_hm0_m = true_hm0_.value();
-  cell_.heave_gain = gain_.value();
-  cell_.heave_lag_s = lag_.value();
+  cell_.statistics.flags |= flags_;
+  cell_.heave_gain = response_.gain();
+  cell_.heave_lag_s = response_.lag_s();
   cell_.heave_sigma_ratio = sigma_ratio_.value();
   cell_.sea = sea_.value();
   cell_.direction_error_rad = direction_error_.value();

@@ -30,6 +30,14 @@ class CellPooling {
     void add(double angle_rad);
     double value() const;
   };
+  // Mean of the runs' responses as complex numbers: one upside down and one upright do not come to a gain of
+  // one.
+  struct MeanResponse {
+    Mean in_phase, late, period_s;
+    void add(const RunResult& run);
+    double gain() const;
+    double lag_s() const;
+  };
   struct MeanSea {
     Mean duration, hm0, hm0_variance, tp, tm01, tm02, tm_10, h13, h110, hmax, spread, check, true_hm0,
         true_tm02, true_spread, true_check;
@@ -43,9 +51,11 @@ class CellPooling {
   bool open_ = false;
   CellResult cell_;
   HeightAccumulator heights_;
-  Mean bound_square_, heave_square_, heave_bound_square_, true_hm0_, gain_, lag_, sigma_ratio_,
-      direction_error_, direction_square_;
+  Mean bound_square_, heave_square_, heave_bound_square_, true_hm0_, sigma_ratio_, direction_error_,
+      direction_square_;
+  MeanResponse response_;
   MeanSea sea_;
+  std::int32_t flags_ = 0;  // of whole runs
   std::vector<CellResult> cells_;
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lcmtypes/flags.h"
+
 namespace waverig::evaluation {
 namespace {
 
@@ -14,6 +16,11 @@ double mean_error_m(const CellResult& cell) {
   const HeightStatistics& s = cell.statistics;
   const double reference = std::isfinite(s.mean_true_height_m) ? s.mean_true_height_m : cell.height_m;
   return std::abs(s.mean_height_m - reference);
+}
+
+double hm0_error_m(const CellResult& cell) {
+  const bool told = is_sea(cell) && (cell.sea.sea.flags & flag::kTooFewWaves) == 0;
+  return told ? std::abs(cell.sea.sea.hm0_m - cell.sea.true_hm0_m) : estimator::kUnknown;
 }
 
 double scatter_m(const CellResult& cell) {
@@ -30,22 +37,28 @@ Difference judged(double baseline, double candidate, double sigma) {
   const double change = candidate - baseline;
   if (std::isfinite(baseline) && !std::isfinite(candidate))
     d.verdict = Verdict::kWorse;  // it says nothing any more
-  if (std::isfinite(change) && !(std::abs(change) <= kCoverageFactor * sigma) && change != 0)
+  if (!std::isfinite(change) || change == 0) return d;
+  if (std::isnan(sigma))
+    d.verdict = Verdict::kUnknown;
+  else if (std::abs(change) > kCoverageFactor * sigma)
     d.verdict = change < 0 ? Verdict::kBetter : Verdict::kWorse;
   return d;
 }
 
 CellComparison compared(const CellResult& baseline, const CellResult& candidate) {
   const HeightStatistics &b = baseline.statistics, &c = candidate.statistics;
-  CellComparison result{baseline.period_s,       baseline.height_m, baseline.method, {}, {},
-                        Verdict::kNotSignificant};
+  CellComparison result{
+      .period_s = baseline.period_s, .height_m = baseline.height_m, .method = baseline.method};
   result.mean_error_m =
       judged(mean_error_m(baseline), mean_error_m(candidate),
              std::hypot(b.expanded_uncertainty_m, c.expanded_uncertainty_m) / kCoverageFactor);
   result.std_m = judged(scatter_m(baseline), scatter_m(candidate),
                         std::hypot(scatter_sigma_m(baseline), scatter_sigma_m(candidate)));
-  for (const Verdict verdict : {Verdict::kWorse, Verdict::kBetter})
-    if (result.mean_error_m.verdict == verdict || result.std_m.verdict == verdict) {
+  result.hm0_error_m = judged(hm0_error_m(baseline), hm0_error_m(candidate),
+                              std::hypot(baseline.sea.sea.hm0_sigma_m, candidate.sea.sea.hm0_sigma_m));
+  for (const Verdict verdict : {Verdict::kWorse, Verdict::kUnknown, Verdict::kBetter})
+    if (result.mean_error_m.verdict == verdict || result.std_m.verdict == verdict ||
+        result.hm0_error_m.verdict == verdict) {
       result.verdict = verdict;
       break;
     }
@@ -64,11 +77,16 @@ const CellResult* find(std::span<const CellResult> cells, const CellResult& like
 }
 
 CellComparison alone(const CellResult& cell, Verdict verdict) {
-  CellComparison result{cell.period_s, cell.height_m, cell.method, {}, {}, verdict};
-  const bool in_baseline = verdict == Verdict::kOnlyInBaseline;
-  (in_baseline ? result.mean_error_m.baseline : result.mean_error_m.candidate) = mean_error_m(cell);
-  (in_baseline ? result.std_m.baseline : result.std_m.candidate) = scatter_m(cell);
-  result.mean_error_m.verdict = result.std_m.verdict = verdict;
+  CellComparison result{.period_s = cell.period_s, .height_m = cell.height_m, .method = cell.method};
+  const auto of_one = [verdict](double value) {
+    Difference d{.verdict = verdict};
+    (verdict == Verdict::kOnlyInBaseline ? d.baseline : d.candidate) = value;
+    return d;
+  };
+  result.mean_error_m = of_one(mean_error_m(cell));
+  result.std_m = of_one(scatter_m(cell));
+  result.hm0_error_m = of_one(hm0_error_m(cell));
+  result.verdict = verdict;
   return result;
 }
 
@@ -109,6 +127,8 @@ const char* name_of(Verdict verdict) {
       return "worse";
     case Verdict::kNotSignificant:
       return "not significant";
+    case Verdict::kUnknown:
+      return "uncertainty unknown";
     case Verdict::kOnlyInBaseline:
       return "only in baseline";
     case Verdict::kOnlyInCandidate:
@@ -121,26 +141,38 @@ std::string comparison_csv(std::span<const CellComparison> cells) {
   std::string text =
       "period_s,height_cm,method,verdict,baseline_mean_error_cm,mean_error_cm,mean_error_sigma_cm,mean_error_"
       "verdict,"
-      "baseline_std_cm,std_cm,std_sigma_cm,std_verdict\n";
+      "baseline_std_cm,std_cm,std_sigma_cm,std_verdict,"
+      "baseline_hm0_error_cm,hm0_error_cm,hm0_error_sigma_cm,hm0_error_verdict\n";
   const auto columns = [](const Difference& d) {
     return fmt::format(",{},{},{},{}", number(d.baseline, 4), number(d.candidate, 4), number(d.sigma, 4),
                        name_of(d.verdict));
   };
   for (const CellComparison& c : cells)
-    text += fmt::format("{:g},{:g},{},{}{}{}\n", c.period_s, c.height_m / kCentimetre, c.method,
-                        name_of(c.verdict), columns(c.mean_error_m), columns(c.std_m));
+    text +=
+        fmt::format("{:g},{:g},{},{}{}{}{}\n", c.period_s, c.height_m / kCentimetre, c.method,
+                    name_of(c.verdict), columns(c.mean_error_m), columns(c.std_m), columns(c.hm0_error_m));
   return text;
 }
 
 std::string comparison_table(std::span<const CellComparison> cells) {
-  std::string text = fmt::format("{:>8} {:>9}  {:<14} {:>20} {:>20}  {}\n", "period s", "height cm", "method",
-                                 "mean error cm", "std cm", "verdict");
-  const auto change = [](const Difference& d) {
-    return fmt::format("{} -> {}", number(d.baseline, 3), number(d.candidate, 3));
+  const auto known = [](const Difference& d) {
+    return std::isfinite(d.baseline) || std::isfinite(d.candidate);
+  };
+  const bool seas =
+      std::any_of(cells.begin(), cells.end(), [&](const CellComparison& c) { return known(c.hm0_error_m); });
+  const auto hm0 = [seas](std::string_view cell) {
+    return seas ? fmt::format(" {:>20}", cell) : std::string();
+  };
+  std::string text = fmt::format("{:>8} {:>9}  {:<14} {:>20} {:>20}{}  {}\n", "period s", "height cm",
+                                 "method", "mean error cm", "std cm", hm0("Hm0 error cm"), "verdict");
+  const auto change = [&](const Difference& d) {
+    return known(d) ? fmt::format("{} -> {}", number(d.baseline, 3), number(d.candidate, 3))
+                    : std::string("-");
   };
   for (const CellComparison& c : cells)
-    text += fmt::format("{:8.1f} {:9.1f}  {:<14} {:>20} {:>20}  {}\n", c.period_s, c.height_m / kCentimetre,
-                        c.method, change(c.mean_error_m), change(c.std_m), name_of(c.verdict));
+    text += fmt::format("{:8.1f} {:9.1f}  {:<14} {:>20} {:>20}{}  {}\n", c.period_s, c.height_m / kCentimetre,
+                        c.method, change(c.mean_error_m), change(c.std_m), hm0(change(c.hm0_error_m)),
+                        name_of(c.verdict));
   return text;
 }
 

@@ -9,11 +9,16 @@
 
 namespace waverig::evaluation {
 
-// Whether the set height is Hm0 of an irregular sea, told from the true heave: of regular waves four standard
-// deviations are sqrt(2) heights.
-inline bool is_sea(const CellResult& cell) { return cell.true_hm0_m < 1.2 * cell.height_m; }
+// Whether the set height is Hm0 of an irregular sea. Where the results do not say it (of an older version) it
+// is guessed from the true heave: of regular waves four standard deviations are sqrt(2) heights, of a sea
+// that is not all too short nearly one.
+inline bool is_sea(const CellResult& cell) {
+  return cell.motion == Motion::kUnknown ? cell.true_hm0_m < 1.3 * cell.height_m
+                                         : cell.motion == Motion::kSea;
+}
 
-enum class Verdict { kBetter, kWorse, kNotSignificant, kOnlyInBaseline, kOnlyInCandidate };
+// kUnknown: they differ, and one of them does not state its uncertainty.
+enum class Verdict { kBetter, kWorse, kNotSignificant, kUnknown, kOnlyInBaseline, kOnlyInCandidate };
 
 // One quantity of a cell; smaller is better. sigma: standard uncertainty of the difference, k = 1.
 struct Difference {
@@ -27,11 +32,15 @@ struct CellComparison {
   std::string method;
   // |mean - true mean| (set height where the truth is unknown). Its uncertainty: the expanded uncertainties
   // / 2.
-  Difference mean_error_m;
+  Difference mean_error_m{};
   // Standard deviation of single waves; on irregular seas, whose waves differ by nature, the rms of their
   // errors. Its uncertainty: std / sqrt(2 (n - 1)), of normal scatter.
-  Difference std_m;
-  Verdict verdict = Verdict::kNotSignificant;  // worse if either is, else better if either is
+  Difference std_m{};
+  // |Hm0 - true Hm0| of a sea, where the method tells one of waves enough. Its uncertainty: what the method
+  // states.
+  Difference hm0_error_m{};
+  Verdict verdict =
+      Verdict::kNotSignificant;  // worse if any is, else unknown if any is, else better if any is
 };
 
 // A difference is significant where it exceeds two standard uncertainties (k = 2). Cells are matched by

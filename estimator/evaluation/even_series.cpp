@@ -29,6 +29,8 @@ std::int64_t median_interval(std::span<const std::int64_t> utime) {
   return *middle;
 }
 
+std::int64_t longest_step(std::span<const std::int64_t> utime) { return 3 * median_interval(utime); }
+
 bool mostly_gap(std::int64_t begin, std::int64_t end, std::int64_t step, std::size_t known) {
   constexpr double kStepsPerValue = 100;
   return (static_cast<double>(end) - static_cast<double>(begin)) / static_cast<double>(step) >

@@ -26,6 +26,9 @@ class Interpolated {
 // utime: at least two, growing.
 std::int64_t median_interval(std::span<const std::int64_t> utime);
 
+// Two values further apart than this have a gap between them: three times the median interval.
+std::int64_t longest_step(std::span<const std::int64_t> utime);
+
 // An even grid over [begin, end] would be mostly gap: a hundred steps and more for each value that is known.
 bool mostly_gap(std::int64_t begin, std::int64_t end, std::int64_t step, std::size_t known);
 

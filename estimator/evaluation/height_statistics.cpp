@@ -77,8 +77,12 @@ HeightStatistics HeightAccumulator::statistics(double set_height_m, double bound
     contribute("frequency", std::sqrt(frequency_variance_sum_) / static_cast<double>(frequency_records_),
                'B');
   double variance = 0;
-  for (const Contribution& c : s.budget) variance += c.sigma_m * c.sigma_m;
-  if (!s.budget.empty()) s.expanded_uncertainty_m = kCoverageFactor * std::sqrt(variance);
+  bool stated = false;
+  for (const Contribution& c : s.budget) {
+    variance += c.sigma_m * c.sigma_m;
+    stated = stated || c.type == 'B';
+  }
+  if (stated) s.expanded_uncertainty_m = kCoverageFactor * std::sqrt(variance);
   return s;
 }
 

@@ -13,9 +13,13 @@ namespace waverig::evaluation {
 //   scatter      what the observed standard deviation has beyond that noise, / sqrt(n), type A: the finite
 //   number of
 //                waves. Noise is not counted twice; where it is unknown the whole scatter stands here.
-//   calibration  mean of the waves' sigma: common to all records of one calibration
+//   calibration  mean of the waves' sigma: common to all records of one calibration; of a program that states
+//   one
+//                sigma of its heave and no parts, all of it (zero_crossing.h)
 //   tilt         mean of the waves' sigma: common too, since the sensor's errors behind it are
 //   frequency    mean of the waves' sigma in a record, independent from record to record
+// Where the waves state nothing, the scatter stands in the budget alone and the expanded uncertainty is
+// unknown: waves that are all wrong by a tenth scatter by nothing.
 class HeightAccumulator {
  public:
   void add(const JudgedWave& wave);

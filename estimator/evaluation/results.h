@@ -53,6 +53,9 @@ struct JudgedSea {
   }
 };
 
+// What moved the sensor: waves of one height and period, or an irregular sea, whose height is Hm0.
+enum class Motion { kUnknown, kRegular, kSea };
+
 // One run, one method.
 struct RunResult {
   std::string run;            // stem of runs/<run>.lcm
@@ -60,12 +63,14 @@ struct RunResult {
   int repeat = 0;
   double period_s = 0;        // as set
   double height_m = 0;        // as set
+  Motion motion = Motion::kUnknown;
   HeightStatistics statistics;
   std::vector<JudgedWave> waves;      // the steady ones
   std::vector<JudgedSea> seas;
   double heave_rmse_m = estimator::kUnknown;   // against the true heave over the steady part, mean removed
   double heave_bound_m = estimator::kUnknown;  // the least that can be, of a sea of known spectrum (heave_bound.h)
   std::int64_t excluded_waves = 0;    // in ramps or cut by the record's edge
+  double heave_coverage = estimator::kUnknown;  // part of the steady time with heave; where waves were counted in it
   double heave_gain = estimator::kUnknown;     // estimated over true heave, least squares over the steady part
   double heave_lag_s = estimator::kUnknown;    // positive: the estimate comes late
   double heave_sigma_ratio = estimator::kUnknown;   // rms of error over stated sigma; 1: honest, above: too sure
@@ -79,6 +84,7 @@ struct CellResult {
   double period_s = 0;
   double height_m = 0;
   std::string method;
+  Motion motion = Motion::kUnknown;
   HeightStatistics statistics;
   double heave_rmse_m = estimator::kUnknown;      // root of the mean square over the repeats
   double heave_bound_m = estimator::kUnknown;     // likewise

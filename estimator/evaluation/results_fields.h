@@ -21,6 +21,8 @@ using Json = nlohmann::ordered_json;
 template <class T, class Structure>
 concept Is = std::same_as<std::remove_const_t<T>, Structure>;
 
+inline constexpr const char *kRegular = "regular", *kSea = "sea";
+
 // Structure to JSON. Unknown numbers (NaN) are null in the file.
 class Writer {
  public:
@@ -35,6 +37,9 @@ class Writer {
   }
   void known(const char* key, const std::string& value) {
     if (!value.empty()) json_[key] = value;
+  }
+  void known(const char* key, Motion value) {
+    if (value != Motion::kUnknown) json_[key] = value == Motion::kSea ? kSea : kRegular;
   }
   void operator()(const char* key, char value) { json_[key] = std::string(1, value); }
   template <std::integral Integer>
@@ -78,6 +83,12 @@ class Reader {
   void known(const char* key, std::string& value) {
     value.clear();
     if (json_.contains(key)) (*this)(key, value);
+  }
+  void known(const char* key, Motion& value) {
+    std::string name;
+    known(key, name);
+    if (!name.empty() && name != kSea && name != kRegular) throw wrong(key, "\"regular\" or \"sea\"");
+    value = name.empty() ? Motion::kUnknown : name == kSea ? Motion::kSea : Motion::kRegular;
   }
   void operator()(const char* key, std::string& value) {
     const Json& j = at(key);
@@ -195,6 +206,7 @@ void fields(auto& a, Is<RunResult> auto& r) {
   a("repeat", r.repeat);
   a("period_s", r.period_s);
   a("height_m", r.height_m);
+  a.known("motion", r.motion);
   fields(a, r.statistics);
   a("heave_rmse_m", r.heave_rmse_m);
   a.known("heave_bound_m", r.heave_bound_m);
@@ -205,6 +217,7 @@ void fields(auto& a, Is<RunResult> auto& r) {
   a("true_tm02_s", r.true_tm02_s);
   a("noise_density_mps2_rthz", r.noise_density_mps2_rthz);
   a("excluded_waves", r.excluded_waves);
+  a.known("heave_coverage", r.heave_coverage);
   a("single_waves", r.waves);
   a("seas", r.seas);
 }
@@ -213,6 +226,7 @@ void fields(auto& a, Is<CellResult> auto& c) {
   a("period_s", c.period_s);
   a("height_m", c.height_m);
   a("method", c.method);
+  a.known("motion", c.motion);
   fields(a, c.statistics);
   a("heave_rmse_m", c.heave_rmse_m);
   a.known("heave_bound_m", c.heave_bound_m);

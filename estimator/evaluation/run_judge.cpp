@@ -9,6 +9,7 @@
 #include <waverig/truth_t.hpp>
 
 #include "estimator/evaluation/bound.h"
+#include "estimator/evaluation/even_series.h"
 #include "estimator/evaluation/height_statistics.h"
 #include "estimator/evaluation/run_record.h"
 #include "estimator/evaluation/true_direction.h"
@@ -128,12 +129,24 @@ std::vector<RunResult> RunJudge::finish() {
 
 std::vector<estimator::Wave> RunJudge::counted_waves(const OfMethod& method) {
   std::vector<std::int64_t> utime;
-  std::vector<double> heave_m;
+  std::vector<double> heave_m, sigma_m;
   for (const Heave& heave : method.series) {
     utime.push_back(heave.utime);
     heave_m.push_back(heave.heave_m);
+    sigma_m.push_back(heave.sigma_m);
   }
-  return waves_of(count_waves(utime, heave_m, {.interpolate_extremes = true}));
+  return waves_of(count_waves(utime, heave_m, {.interpolate_extremes = true}, sigma_m));
+}
+
+double RunJudge::covered_s(const OfMethod& method) const {
+  std::vector<std::int64_t> utime = {steady_begin_};
+  for (const Heave& heave : method.series) utime.push_back(heave.utime);
+  utime.push_back(steady_end_);
+  const std::int64_t longest = longest_step(utime);
+  std::int64_t covered = 0;
+  for (std::size_t i = 1; i < utime.size(); ++i)
+    if (const std::int64_t step = utime[i] - utime[i - 1]; step <= longest) covered += step;
+  return static_cast<double>(covered) * kMicrosecond;
 }
 
 RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
@@ -143,6 +156,7 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
   result.repeat = repeat_;
   result.period_s = period_s_;
   result.height_m = height_m_;
+  result.motion = settings_.motion;
   result.noise_density_mps2_rthz = settings_.noise_density_mps2_rthz;
   for (const estimator::SeaState& sea : method.seas) {
     const auto end = end_of(sea.start_utime, sea.duration_s);
@@ -153,7 +167,11 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
                                                     ended_ ? std::min(*end, steady_end_) : *end);
   }
 
-  if (method.waves.empty()) method.waves = counted_waves(method);
+  const double steady_s = static_cast<double>(steady_end_ - steady_begin_) * kMicrosecond;
+  if (method.waves.empty() && !method.series.empty() && steady_s > 0) {
+    method.waves = counted_waves(method);
+    result.heave_coverage = covered_s(method) / steady_s;
+  }
   HeightAccumulator accumulator;
   for (const estimator::Wave& wave : method.waves) {
     const auto end = end_of(wave.start_utime, wave.period_s);
@@ -169,6 +187,7 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
   const double bound_m =
       height_bound_m({period_s_, settings_.noise_density_mps2_rthz, settings_.sample_rate_hz});
   result.statistics = accumulator.statistics(height_m_, bound_m);
+  if ((1 - result.heave_coverage) * steady_s > period_s_) result.statistics.flags |= flag::kGap;
 
   if (begun_) {
     const TrueSea sea = true_sea(truth_, steady_begin_, steady_end_);

@@ -23,6 +23,7 @@ struct JudgeSettings {
   double noise_density_mps2_rthz =
       estimator::kUnknown;      // one-sided, of the vertical acceleration; for the bound
   double sample_rate_hz = 100;  // of the sensor; for the bound
+  Motion motion = Motion::kUnknown;
   std::map<std::string, double, std::less<>>
       heave_bound_m{};  // of methods whose sea is known (heave_bound.h)
 };
@@ -40,7 +41,8 @@ class RunJudge {
   void add(std::string_view method, const estimator::SeaState& sea);
 
   // Waves that lie whole within the steady part are judged, all others only counted. One result a method, by
-  // name.
+  // name. A method that gives heave alone is flagged with the gap where that misses more than one set period
+  // of the steady part.
   std::vector<RunResult> finish();
 
  private:
@@ -61,6 +63,7 @@ class RunJudge {
   void settle(OfMethod& method);
   void compare(HeaveComparison& comparison, const Heave& heave) const;
   static std::vector<estimator::Wave> counted_waves(const OfMethod& method);
+  double covered_s(const OfMethod& method) const;  // of the steady part, by heave without a gap
   RunResult result_of(const std::string& name, OfMethod& method) const;
 
   std::string run_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "estimator/evaluation/even_series.h"
+
 namespace waverig::evaluation {
 namespace {
 
@@ -43,11 +45,7 @@ ZeroLine zero_line(std::span<const std::int64_t> utime, std::span<const double> 
 
 double longest_gap_s(std::span<const std::int64_t> utime, const ZeroCrossingSettings& settings) {
   if (settings.longest_gap_s > 0 || utime.size() < 2) return settings.longest_gap_s;
-  std::vector<std::int64_t> interval(utime.size() - 1);
-  for (std::size_t i = 0; i < interval.size(); ++i) interval[i] = utime[i + 1] - utime[i];
-  const auto middle = interval.begin() + static_cast<std::ptrdiff_t>(interval.size() / 2);
-  std::nth_element(interval.begin(), middle, interval.end());
-  return 3 * static_cast<double>(*middle) * kMicrosecond;
+  return static_cast<double>(longest_step(utime)) * kMicrosecond;
 }
 
 // An up-crossing: its interpolated time and the first sample at or above the zero line.
@@ -87,10 +85,16 @@ double extreme(std::span<const double> h, std::size_t top, double sign, bool int
   return sign * (here - slope * slope / (8 * curvature));
 }
 
+// Nobody's heave is exact: a sigma of zero states nothing.
+double stated(std::span<const double> sigma_m, std::size_t i) {
+  return !sigma_m.empty() && sigma_m[i] > 0 ? sigma_m[i] : estimator::kUnknown;
+}
+
 }  // namespace
 
 std::vector<CountedWave> count_waves(std::span<const std::int64_t> utime, std::span<const double> heave_m,
-                                     const ZeroCrossingSettings& settings) {
+                                     const ZeroCrossingSettings& settings,
+                                     std::span<const double> heave_sigma_m) {
   const ZeroLine line = zero_line(utime, heave_m, settings);
   std::vector<double> h(heave_m.size());
   for (std::size_t i = 0; i < h.size(); ++i)
@@ -108,12 +112,13 @@ std::vector<CountedWave> count_waves(std::span<const std::int64_t> utime, std::s
       const auto first = h.begin() + static_cast<std::ptrdiff_t>(crossings[k].sample);
       const auto last = h.begin() + static_cast<std::ptrdiff_t>(crossings[k + 1].sample);
       const auto [low, high] = std::minmax_element(first, last);
-      const double crest =
-          extreme(h, static_cast<std::size_t>(high - h.begin()), +1, settings.interpolate_extremes);
-      const double trough =
-          extreme(h, static_cast<std::size_t>(low - h.begin()), -1, settings.interpolate_extremes);
+      const auto top = static_cast<std::size_t>(high - h.begin()),
+                 bottom = static_cast<std::size_t>(low - h.begin());
+      const double crest = extreme(h, top, +1, settings.interpolate_extremes);
+      const double trough = extreme(h, bottom, -1, settings.interpolate_extremes);
       waves.push_back({crossings[k].utime, seconds(crossings[k].utime, crossings[k + 1].utime),
-                       crest - trough, crest, trough});
+                       crest - trough, crest, trough,
+                       stated(heave_sigma_m, top) + stated(heave_sigma_m, bottom)});
     }
     begin = std::max(end, begin + 1);
   }
@@ -141,6 +146,7 @@ std::vector<estimator::Wave> waves_of(std::span<const CountedWave> counted) {
     wave.seq = static_cast<std::int64_t>(waves.size());
     wave.period_s = c.period_s;
     wave.height_m = c.height_m;
+    wave.calibration_sigma_m = c.sigma_m;
     waves.push_back(wave);
   }
   return waves;

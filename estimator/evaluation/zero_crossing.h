@@ -27,16 +27,25 @@ struct ZeroCrossingSettings {
 struct CountedWave {
   std::int64_t start_utime = 0;  // interpolated crossing
   double period_s = 0;
-  double height_m = 0;  // crest to trough
-  double crest_m = 0;   // above the zero line
-  double trough_m = 0;  // below it, negative
+  double height_m = 0;                   // crest to trough
+  double crest_m = 0;                    // above the zero line
+  double trough_m = 0;                   // below it, negative
+  double sigma_m = estimator::kUnknown;  // standard uncertainty of the height, where the heave's is stated
 };
 
-// utime in microseconds, growing; heave in metres, up; NaN is a gap. Both of one length.
+// utime in microseconds, growing; heave in metres, up; NaN is a gap. Both of one length, as is what the heave
+// states of its standard uncertainty (k = 1), unless that is empty.
+//
+// Of a stated sigma nobody tells how much is noise and how much goes with the heave, as a wrong scale does,
+// which lifts the crest and sinks the trough. So the height is given the sum of both sigmas, the most that it
+// can be wrong by, and waves_of() carries it as common to all waves: it does not become less with their
+// number (GUM 5.2.2, note 1: correlation unknown and taken as one). Where nothing is stated, nothing is
+// known.
 std::vector<CountedWave> count_waves(std::span<const std::int64_t> utime, std::span<const double> heave_m,
-                                     const ZeroCrossingSettings& settings = {});
+                                     const ZeroCrossingSettings& settings = {},
+                                     std::span<const double> heave_sigma_m = {});
 
-// The same as single waves of a method that states no uncertainty.
+// The same as single waves of a method.
 std::vector<estimator::Wave> waves_of(std::span<const CountedWave> counted);
 
 struct WaveStatistics {

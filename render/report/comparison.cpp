@@ -39,10 +39,10 @@ std::string who(const char* role, const evaluation::CampaignResults& results, co
 }
 
 std::string tally(const std::vector<evaluation::CellComparison>& cells) {
-  std::array<int, 5> counts{};
+  std::array<int, 6> counts{};
   for (const evaluation::CellComparison& cell : cells) ++counts[static_cast<std::size_t>(cell.verdict)];
   std::string out = "<p>";
-  for (const Verdict v : {Verdict::kBetter, Verdict::kWorse, Verdict::kNotSignificant,
+  for (const Verdict v : {Verdict::kBetter, Verdict::kWorse, Verdict::kNotSignificant, Verdict::kUnknown,
                           Verdict::kOnlyInBaseline, Verdict::kOnlyInCandidate}) {
     const int n = counts[static_cast<std::size_t>(v)];
     if (n > 0)

@@ -93,6 +93,8 @@ evaluation::JudgeSettings judge_settings(const CampaignUnit& unit) {
 evaluation::JudgeSettings judge_settings(const CampaignSettings& campaign, const CampaignUnit& unit,
                                          const RunPlan& plan) {
   evaluation::JudgeSettings settings = judge_settings(unit);
+  settings.motion =
+      campaign.sweep.mover == Mover::kSea ? evaluation::Motion::kSea : evaluation::Motion::kRegular;
   if (campaign.sweep.mover != Mover::kSea) return settings;
   const evaluation::HeaveBound bound =
       sea_bound(sea_settings(campaign, unit, plan).sea, unit.settings.accelerometer);

@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "estimator/evaluation/atomic_file.h"
@@ -21,6 +23,7 @@
 #include "estimator/evaluation/waves_csv.h"
 #include "estimator/evaluation/zero_crossing.h"
 #include "lcmtypes/error.h"
+#include "lcmtypes/flags.h"
 #include "rig/cli/commands.h"
 #include "rig/version.h"
 
@@ -49,7 +52,8 @@ int evaluate_heave(const EvaluateArguments& arguments) {
   if (arguments.out.empty())
     throw UserError("--out is missing; expected a directory for waves.csv and summary.json");
   const evaluation::HeaveSeries heave = evaluation::read_heave_csv(arguments.input);
-  const auto counted = evaluation::count_waves(heave.utime, heave.heave_m, arguments.waves);
+  const auto counted =
+      evaluation::count_waves(heave.utime, heave.heave_m, arguments.waves, heave.heave_sigma_m);
   const auto waves = evaluation::waves_of(counted);
   const evaluation::HeaveSpectrum spectrum = evaluation::spectrum_of(heave.utime, heave.heave_m);
   evaluation::Summary summary = evaluation::summary_of("zero-up-crossing", waves);
@@ -99,12 +103,40 @@ std::map<std::string, fs::path> other_methods(const std::vector<std::string>& ot
   return methods;
 }
 
+fs::path file_of(const fs::path& directory, const std::string& run) { return directory / (run + ".csv"); }
+
+// What the figures of someone else's heave do not say by themselves.
+void remark(const evaluation::RunResult& run, const fs::path& file) {
+  if ((run.statistics.flags & flag::kGap) != 0)
+    fmt::print(stderr,
+               "waverig: {}: heave for {:.0f} % of the run's steady part; judged by its {} waves, flag gap\n",
+               file.string(), 100 * run.heave_coverage, run.statistics.waves);
+  if (std::cos(2 * std::numbers::pi * run.heave_lag_s / run.true_tm02_s) < 0)
+    fmt::print(
+        stderr,
+        "waverig: {}: heave goes against the true one, {:.2f} s late in waves of {:.1f} s: is it upside "
+        "down, or its clock off?\n",
+        file.string(), run.heave_lag_s, run.true_tm02_s);
+}
+
 // Heave of someone else's program for this run joins those of the log.
 void add_other_heave(evaluation::RunRecord& record, const std::string& method, const fs::path& directory) {
   if (record.heave.contains(method) || record.waves.contains(method) || record.seas.contains(method))
     throw UserError(fmt::format("--heave {}={}: run {} has a method of that name; expected another name",
                                 method, directory.string(), record.run));
-  const evaluation::HeaveSeries series = evaluation::read_heave_csv(directory / (record.run + ".csv"));
+  const fs::path file = file_of(directory, record.run);
+  const evaluation::HeaveSeries series = evaluation::read_heave_csv(file);
+  bool any = false;
+  for (std::size_t i = 0; i < series.utime.size(); ++i)
+    any = any || (std::isfinite(series.heave_m[i]) && series.utime[i] >= record.steady_begin_utime &&
+                  series.utime[i] < record.steady_end_utime);
+  if (!any)
+    throw UserError(
+        fmt::format("{}: heave from {} to {}, none in the steady part of the run from {} to {}; expected the "
+                    "run's clock, in "
+                    "microseconds",
+                    file.string(), series.utime.front(), series.utime.back(), record.steady_begin_utime,
+                    record.steady_end_utime));
   auto& heave = record.heave[method];
   for (std::size_t i = 0; i < series.utime.size(); ++i) {
     estimator::HeaveSample sample;
@@ -125,6 +157,7 @@ evaluation::JudgeSettings judge_settings(const evaluation::RunRecord& record,
         (static_cast<double>(record.imu.back().utime - record.imu.front().utime) * kMicrosecond);
   for (const evaluation::RunResult& run : earlier.runs)
     if (run.run == record.run) {
+      settings.motion = run.motion;
       settings.noise_density_mps2_rthz = run.noise_density_mps2_rthz;
       settings.heave_bound_m[run.method] = run.heave_bound_m;
     }
@@ -154,8 +187,11 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
   for (const fs::path& log : logs) {
     evaluation::RunRecord record = evaluation::load_run(log);
     for (const auto& [name, heave] : others) add_other_heave(record, name, heave);
-    for (auto& run : evaluation::judge(record, judge_settings(record, results)))
+    for (auto& run : evaluation::judge(record, judge_settings(record, results))) {
+      if (const auto other = others.find(run.method); other != others.end())
+        remark(run, file_of(other->second, run.run));
       judged.push_back(std::move(run));
+    }
   }
   results.runs = std::move(judged);
   results.cells = evaluation::cells_of(results.runs);

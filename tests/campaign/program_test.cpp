@@ -180,6 +180,47 @@ TEST(Program, ReportsCampaignsOfWavesAndOfSeasAndHoldsThemSideBySide) {
   EXPECT_FALSE(std::filesystem::exists(temporary / "none.html"));
 }
 
+// Heave of someone else's program, of the right motion but on another clock, short, or upside down.
+TEST(Program, RemarksOnHeaveThatDoesNotFitTheRun) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out done").status, 0);
+  const std::string name = "T04.00s_H050.0cm_r1";
+  ASSERT_EQ(run(temporary, "estimate done/runs/" + name + ".lcm --out ours").status, 0);
+  const auto give = [&](const std::string& folder, std::int64_t later_us, double gain, double part) {
+    std::istringstream rows(bytes_of(temporary / "ours/heave.csv"));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(rows, line);) lines.push_back(line);
+    std::string text = "utime,heave_m\n";
+    for (std::size_t i = 1; i < static_cast<std::size_t>(part * static_cast<double>(lines.size())); ++i) {
+      const std::size_t comma = lines[i].find(',');
+      text += std::to_string(std::stoll(lines[i]) + later_us) + "," +
+              std::to_string(gain * std::stod(lines[i].substr(comma + 1))) + "\n";
+    }
+    std::filesystem::create_directories(temporary / folder);
+    temporary.write(folder + "/" + name + ".csv", text);
+    return run(temporary, "evaluate done --heave theirs=" + folder + " --out judged_" + folder);
+  };
+  const Outcome good = give("good", 0, 1, 1);
+  EXPECT_EQ(good.status, 0);
+  EXPECT_EQ(good.err, "");
+  const Outcome hour = give("hour", 3'600'000'000, 1, 1);
+  EXPECT_EQ(hour.status, 2);
+  EXPECT_NE(hour.err.find("hour/" + name + ".csv: heave from "), std::string::npos) << hour.err;
+  EXPECT_NE(hour.err.find("none in the steady part of the run from "), std::string::npos) << hour.err;
+  EXPECT_FALSE(std::filesystem::exists(temporary / "judged_hour"));
+  const Outcome part = give("part", 0, 1, 0.5);
+  EXPECT_EQ(part.status, 0);
+  EXPECT_NE(part.err.find("% of the run's steady part"), std::string::npos) << part.err;
+  EXPECT_NE(part.out.find(",gap "), std::string::npos) << part.out;
+  const Outcome down = give("down", 0, -1, 1);
+  EXPECT_EQ(down.status, 0);
+  EXPECT_NE(down.err.find("upside down"), std::string::npos) << down.err;
+  const Outcome taken = run(temporary, "evaluate done --heave harmonic=good --out taken");
+  EXPECT_EQ(taken.status, 2);
+  EXPECT_NE(taken.err.find("expected another name"), std::string::npos) << taken.err;
+}
+
 TEST(Program, ResultsDirectoryAloneReproducesItself) {
   const TemporaryDirectory temporary;
   temporary.write("tiny.toml", kTiny);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lcmtypes/flags.h"
 #include "motion/kinematics/random.h"
 
 namespace waverig::evaluation {
@@ -61,6 +62,49 @@ TEST(Compare, JudgesTheErrorOfSingleWavesOnSeas) {
   EXPECT_EQ(c.std_m.verdict, Verdict::kWorse);
   EXPECT_EQ(c.std_m.baseline, 0.01);
   EXPECT_EQ(c.std_m.candidate, 0.02);
+}
+
+// A minute of a sea can be as lively as regular waves: what the results say counts, not the guess.
+TEST(Compare, TakesTheMotionFromTheResultsWhereTheySayIt) {
+  CellResult a = cell(0.6, 0.2, 0.002), b = cell(0.6, 0.1, 0.002);
+  a.statistics.rmse_m = b.statistics.rmse_m = 0.01;
+  a.true_hm0_m = 1.42 * a.height_m;
+  b.true_hm0_m = 0.9 * b.height_m;
+  a.motion = b.motion = Motion::kSea;
+  EXPECT_EQ(compared(a, b).verdict, Verdict::kNotSignificant);
+  a.motion = b.motion = Motion::kRegular;
+  EXPECT_EQ(compared(a, b).std_m.verdict, Verdict::kBetter);
+  a.motion = Motion::kUnknown;
+  a.true_hm0_m = 1.21 * a.height_m;  // of a sea of one minute, in results of an older version
+  EXPECT_TRUE(is_sea(a));
+}
+
+TEST(Compare, JudgesHm0OfASeaOfWavesEnough) {
+  CellResult a = cell(0.6, 0.2, 0.002), b = a;
+  a.motion = b.motion = Motion::kSea;
+  a.statistics.rmse_m = b.statistics.rmse_m = 0.01;
+  a.sea = {.sea = {.hm0_m = 1.005, .hm0_sigma_m = 0.003}, .true_hm0_m = 1};
+  b.sea = {.sea = {.hm0_m = 0.98, .hm0_sigma_m = 0.004}, .true_hm0_m = 1};
+  EXPECT_EQ(compared(a, b).hm0_error_m.verdict, Verdict::kWorse);  // 15 mm; 5 mm is one sigma
+  EXPECT_EQ(compared(a, b).verdict, Verdict::kWorse);
+  EXPECT_EQ(compared(b, a).verdict, Verdict::kBetter);
+  b.sea.sea.hm0_m = 0.986;
+  EXPECT_EQ(compared(a, b).verdict, Verdict::kNotSignificant);
+  EXPECT_NE(comparison_table(std::vector{compared(a, b)}).find("Hm0 error cm"), std::string::npos);
+  b.sea.sea.hm0_m = 0.5;
+  b.sea.sea.flags = a.sea.sea.flags = flag::kTooFewWaves;
+  EXPECT_EQ(compared(a, b).verdict, Verdict::kNotSignificant);
+  const CellResult regular = cell(0.6, 0.01, 0.002);
+  EXPECT_EQ(comparison_table(std::vector{compared(regular, regular)}).find("Hm0"), std::string::npos);
+}
+
+// Of a program that states no uncertainty nothing can be said but that it differs.
+TEST(Compare, DoesNotJudgeByAnUncertaintyThatNobodyStates) {
+  const CellResult a = cell(0.6, 0.01, estimator::kUnknown), b = cell(0.5, 0.01, estimator::kUnknown);
+  EXPECT_EQ(compared(a, b).mean_error_m.verdict, Verdict::kUnknown);
+  EXPECT_EQ(compared(a, b).verdict, Verdict::kUnknown);
+  EXPECT_EQ(compared(a, a).verdict, Verdict::kNotSignificant);
+  EXPECT_EQ(compared(a, cell(0.5, 0.02, estimator::kUnknown)).verdict, Verdict::kWorse) << "by its scatter";
 }
 
 TEST(Compare, IsWorseWhereEitherIsWorse) {

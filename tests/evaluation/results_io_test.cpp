@@ -39,6 +39,7 @@ RunResult run(double period_s, double height_m, const std::string& method, int r
   }
   a.close_record();
   r.statistics = a.statistics(height_m, 0.0026);
+  r.motion = Motion::kRegular;
   r.heave_rmse_m = 0.002;
   r.seas.push_back({.sea = {.hm0_m = 1.5}, .true_hm0_m = 1.49});
   return r;
@@ -103,6 +104,8 @@ TEST(Results, ComeBackFromTheDiskWhole) {
   EXPECT_TRUE(std::isnan(back.runs[0].waves[3].wave.tilt_sigma_m));
   EXPECT_EQ(back.runs[0].seas.at(0).sea.hm0_m, 1.5);
   ASSERT_EQ(back.cells.size(), 3u);
+  EXPECT_EQ(back.cells[0].motion, Motion::kRegular);
+  EXPECT_EQ(back.runs[0].motion, Motion::kRegular);
   EXPECT_EQ(back.cells[0].statistics.budget.size(), c.cells[0].statistics.budget.size());
   EXPECT_EQ(back.cells[0].statistics.budget[0].name, "noise");
   EXPECT_EQ(results_csv(back.cells), Scratch::read(scratch.path() / "results.csv"));
@@ -203,6 +206,13 @@ TEST(Results, NameTheKeyThatIsWrong) {
   bad = good;
   bad["cells"][0].erase("method");
   EXPECT_NE(complaint(bad).find("cells[0]: key 'method' is missing"), std::string::npos) << complaint(bad);
+  bad = good;
+  bad["runs"][0]["motion"] = "tide";
+  EXPECT_NE(complaint(bad).find("runs[0]: key 'motion' is \"tide\"; expected \"regular\" or \"sea\""), std::string::npos)
+      << complaint(bad);
+  bad["runs"][0].erase("motion");  // as of an older version
+  bad["cells"][0].erase("motion");
+  EXPECT_EQ(complaint(bad), "no complaint");
   bad = good;
   bad["runs"] = 7;
   EXPECT_NE(complaint(bad).find("expected an array"), std::string::npos) << complaint(bad);

@@ -9,6 +9,7 @@
 #include <waverig/truth_t.hpp>
 
 #include "estimator/evaluation/bound.h"
+#include "estimator/evaluation/cells.h"
 #include "estimator/evaluation/run_record.h"
 #include "lcmtypes/flags.h"
 #include "lcmtypes/phase.h"
@@ -194,6 +195,59 @@ TEST(RunJudge, CountsTheWavesOfAMethodThatGivesHeaveOnly) {
   EXPECT_EQ(r.statistics.waves, 7);  // from up-crossing to up-crossing, 16.5 s to 58.5 s
   EXPECT_NEAR(r.statistics.mean_error_percent, 2, 0.01);
   EXPECT_NEAR(r.statistics.mean_period_s, kPeriod, 1e-3);
+}
+
+RunResult of_heave(double gain, double sigma_m, std::int64_t from, std::int64_t to, JudgeSettings settings = {}) {
+  RunJudge judge("run", settings);
+  play(judge, [&](std::int64_t t) {
+    estimator::HeaveSample h;
+    h.utime = t;
+    h.heave_m = gain * true_heave(t);
+    h.heave_sigma_m = sigma_m;
+    if (t >= from && t < to) judge.add("theirs", h);
+  });
+  return judge.finish().at(0);
+}
+
+// A heave that is a tenth too low by its scale, as its program says with 3 cm of 30: U of the mean holds the error.
+TEST(RunJudge, CarriesAStatedSigmaOfHeaveAsCommonToAllWaves) {
+  const RunResult r = of_heave(0.9, 0.03, 0, 72 * kSecond);
+  EXPECT_NEAR(r.waves.at(0).wave.calibration_sigma_m, 0.06, 1e-12) << "crest and trough, in opposite directions";
+  EXPECT_NEAR(r.statistics.expanded_uncertainty_m, 0.12, 1e-3);
+  EXPECT_GT(r.statistics.expanded_uncertainty_m, std::abs(r.statistics.mean_height_m - r.statistics.mean_true_height_m));
+  for (const double nothing : {0.0, estimator::kUnknown})
+    EXPECT_TRUE(std::isnan(of_heave(0.9, nothing, 0, 72 * kSecond).statistics.expanded_uncertainty_m)) << nothing;
+}
+
+TEST(RunJudge, FlagsAHeaveThatMissesMoreThanOneWaveOfTheSteadyPart) {
+  const RunResult whole = of_heave(1, 0.01, 0, 72 * kSecond), late = of_heave(1, 0.01, 17 * kSecond, 72 * kSecond),
+                  third = of_heave(1, 0.01, 0, 28 * kSecond);
+  EXPECT_NEAR(whole.heave_coverage, 1, 1e-9);
+  EXPECT_EQ(whole.statistics.flags & flag::kGap, 0);
+  EXPECT_EQ(late.statistics.flags & flag::kGap, 0) << "5 s of 6 s waves";
+  EXPECT_NEAR(third.heave_coverage, 1.0 / 3, 1e-3);
+  EXPECT_NE(third.statistics.flags & flag::kGap, 0);
+  EXPECT_NE(cells_of(std::vector{whole, third}).at(0).statistics.flags & flag::kGap, 0);
+}
+
+// Half a wave late and half a wave early is upside down both times.
+TEST(RunJudge, PoolsAHeaveUpsideDownAsUpsideDown) {
+  RunResult late = of_heave(-1, 0.01, 0, 72 * kSecond), early = late;
+  EXPECT_NEAR(late.heave_gain, 1, 1e-6);
+  EXPECT_NEAR(std::abs(late.heave_lag_s), kPeriod / 2, 1e-3);
+  early.heave_lag_s = -late.heave_lag_s;
+  const CellResult cell = cells_of(std::vector{late, early}).at(0);
+  EXPECT_NEAR(cell.heave_gain, 1, 1e-6);
+  EXPECT_NEAR(std::abs(cell.heave_lag_s), kPeriod / 2, 1e-3);
+  const RunResult upright = of_heave(1, 0.01, 0, 72 * kSecond);
+  EXPECT_NEAR(cells_of(std::vector{late, upright}).at(0).heave_gain, 0, 1e-3) << "one of each: they cancel";
+  EXPECT_NEAR(cells_of(std::vector{upright}).at(0).heave_lag_s, upright.heave_lag_s, 1e-12);
+}
+
+TEST(RunJudge, PassesOnWhatMovedTheSensor) {
+  const RunResult r = of_heave(1, 0.01, 0, 72 * kSecond, {.motion = Motion::kSea});
+  EXPECT_EQ(r.motion, Motion::kSea);
+  EXPECT_EQ(cells_of(std::vector{r}).at(0).motion, Motion::kSea);
 }
 
 TEST(RunJudge, WithoutTruthOrSteadyPartJudgesNothing) {
