@@ -10,6 +10,7 @@
 #include "render/campaign_figures.h"
 #include "render/report/html.h"
 #include "render/report/report.h"
+#include "render/report/report_parts.h"
 
 namespace waverig::render {
 namespace {
@@ -69,12 +70,13 @@ std::string comparison_html(const evaluation::CampaignResults& baseline, const f
       "where it exceeds two standard uncertainties.",
       {"Period s", "Height cm", "Method", "Verdict", "Error, baseline", "Error, candidate", "Error: verdict",
        "Std, baseline", "Std, candidate", "Std: verdict"});
+  const SettingColumns set(cells);
   for (const evaluation::CellComparison& cell : cells) {
     const auto cm = [](double m) { return number_cell(m / kCentimetre, 2); };
-    table.add_row({number_cell(cell.period_s, 1), number_cell(cell.height_m / kCentimetre, 0),
-                   text_cell(cell.method), verdict_cell(cell.verdict), cm(cell.mean_error_m.baseline),
-                   cm(cell.mean_error_m.candidate), verdict_cell(cell.mean_error_m.verdict),
-                   cm(cell.std_m.baseline), cm(cell.std_m.candidate), verdict_cell(cell.std_m.verdict)});
+    table.add_row({set.period(cell), set.height(cell), text_cell(cell.method), verdict_cell(cell.verdict),
+                   cm(cell.mean_error_m.baseline), cm(cell.mean_error_m.candidate),
+                   verdict_cell(cell.mean_error_m.verdict), cm(cell.std_m.baseline), cm(cell.std_m.candidate),
+                   verdict_cell(cell.std_m.verdict)});
   }
   std::string body =
       "<header>\n<h1>Two campaigns side by side</h1>\n<p "

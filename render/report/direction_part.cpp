@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "render/figures/settings.h"
 #include "render/report/html.h"
@@ -15,6 +16,38 @@ bool tells_direction(const evaluation::CellResult& cell) { return std::isfinite(
 
 }  // namespace
 
+std::string direction_answer(const evaluation::CampaignResults& results) {
+  struct Answer {
+    double worst_rmse_rad = kAuto, least_check = kAuto, largest_check = kAuto;
+    std::size_t settings = 0, told = 0;
+  };
+  std::map<std::string, Answer> answers;
+  for (const evaluation::CellResult& cell : results.cells) {
+    Answer& answer = answers[cell.method];
+    ++answer.settings;
+    if (!tells_direction(cell) || !std::isfinite(cell.direction_rmse_rad)) continue;
+    ++answer.told;
+    answer.worst_rmse_rad = std::fmax(answer.worst_rmse_rad, cell.direction_rmse_rad);
+    answer.least_check = std::fmin(answer.least_check, cell.sea.sea.check_factor);
+    answer.largest_check = std::fmax(answer.largest_check, cell.sea.sea.check_factor);
+  }
+  std::string out;
+  for (const auto& [method, answer] : answers) {
+    if (answer.told == 0) continue;
+    out += fmt::format(
+        "<li><strong>{}</strong>: where the waves came from is within {:.2f}\u00B0 of the true direction "
+        "(rms over "
+        "the runs of a setting) in {}",
+        html_text(method), answer.worst_rmse_rad / kDegree,
+        answer.told == answer.settings ? "every setting"
+                                       : fmt::format("{} of {} settings", answer.told, answer.settings));
+    if (std::isfinite(answer.least_check))
+      out += fmt::format("; the check factor is {:.3f} to {:.3f}", answer.least_check, answer.largest_check);
+    out += ".</li>\n";
+  }
+  return out;
+}
+
 std::string direction_results_table(const evaluation::CampaignResults& results) {
   if (std::none_of(results.cells.begin(), results.cells.end(), tells_direction)) return "";
   HtmlTable table(
@@ -25,12 +58,12 @@ std::string direction_results_table(const evaluation::CampaignResults& results) 
       "horizontal over vertical motion.",
       {"Period s", "Height cm", "Method", "From", "Error", "Rms error", "Spread", "True spread",
        "Check factor", "True check factor"});
+  const SettingColumns set(results.cells);
   for (const evaluation::CellResult& cell : results.cells) {
     if (!tells_direction(cell)) continue;
     const std::string link = fmt::format("#{}", cell_id(cell));
     const auto degrees = [&](double angle_rad) { return number_cell(angle_rad / kDegree, 2, link); };
-    table.add_row({number_cell(cell.period_s, cell.period_s == std::floor(cell.period_s) ? 0 : 2),
-                   number_cell(cm(cell.height_m), 0), text_cell(cell.method),
+    table.add_row({set.period(cell), set.height(cell), text_cell(cell.method),
                    degrees(cell.sea.sea.mean_direction_rad), degrees(cell.direction_error_rad),
                    degrees(cell.direction_rmse_rad), degrees(cell.sea.sea.spread_rad),
                    degrees(cell.sea.direction.spread_rad), number_cell(cell.sea.sea.check_factor, 3, link),

@@ -60,11 +60,12 @@ void HtmlTable::add_row(std::vector<HtmlCell> cells, std::string id) {
   rows_.push_back({std::move(cells), std::move(id)});
 }
 
-std::string HtmlTable::html(bool sortable) const {
+std::string HtmlTable::html(Caption caption, bool sortable) const {
   // The caption stands outside, so that it does not scroll away with a wide table.
-  std::string out = fmt::format(
-      "<p class=\"caption\">{0}</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-      "aria-label=\"{0}\"><table{1}>\n<thead><tr>",
+  std::string out;
+  if (caption == Caption::kShown) out = fmt::format("<p class=\"caption\">{}</p>\n", html_text(caption_));
+  out += fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table{}>\n<thead><tr>",
       html_text(caption_), sortable ? " class=\"sortable\"" : "");
   for (std::size_t c = 0; c < heads_.size(); ++c) {
     const bool numeric = !rows_.empty() && c < rows_.front().cells.size() && rows_.front().cells[c].numeric;

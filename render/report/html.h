@@ -32,7 +32,9 @@ class HtmlTable {
       : caption_(std::move(caption)), heads_(std::move(heads)) {}
   void add_row(std::vector<HtmlCell> cells, std::string id = {});
   bool empty() const { return rows_.empty(); }
-  std::string html(bool sortable = true) const;
+  enum class Caption { kShown, kHeard };  // kHeard: for screen readers alone, where a heading says the same
+  std::string html(bool sortable = true) const { return html(Caption::kShown, sortable); }
+  std::string html(Caption caption, bool sortable = true) const;
 
  private:
   struct Row {

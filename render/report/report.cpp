@@ -32,9 +32,9 @@ std::string wave_id(const RunResult& run, const evaluation::JudgedWave& wave) {
   return run_id(run) + "-wave-" + std::to_string(wave.wave.seq);
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string joined(const std::vector<std::string>& words, const char* between = ", ") {
   std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
   return out;
 }
 
@@ -45,6 +45,29 @@ bool gives_waves(const CampaignResults& results, const std::string& method) {
   });
 }
 
+// Settings without waves are no success: they are counted, and named where there are few.
+std::string height_answer(const MethodSummary& s) {
+  constexpr std::size_t kMostNamed = 4;
+  const std::size_t without = s.without_waves.size();
+  std::string out = fmt::format("<li><strong>{}</strong>: ", html_text(s.method));
+  if (without == s.settings) return out + "no single wave was measured in any setting.</li>\n";
+  std::string where = "every setting";
+  if (without > 0) {
+    where = fmt::format("{} of {} settings", s.settings - without, s.settings);
+    std::vector<std::string> named = s.without_waves;
+    if (without > kMostNamed) named.resize(kMostNamed);
+    where += "; none were measured at " + joined(named, " or ");
+    if (without > kMostNamed) where += fmt::format(" and {} more", without - kMostNamed);
+  }
+  out += fmt::format(
+      "the mean wave height is within {:.2f} % of the set height in {}; single waves scatter by {:.2f} to "
+      "{:.2f} cm",
+      s.worst_error_percent, where, cm(s.least_std_m), cm(s.largest_std_m));
+  if (std::isfinite(s.worst_std_over_bound))
+    out += fmt::format(", at most {:.2f} times the physical limit", s.worst_std_over_bound);
+  return out + ".</li>\n";
+}
+
 std::string intro(const CampaignResults& results) {
   std::string out = fmt::format(
       "<header>\n<h1>Wave measurement campaign \u201C{}\u201D</h1>\n"
@@ -53,16 +76,8 @@ std::string intro(const CampaignResults& results) {
       "waves?</p>\n<ul class=\"answer\">\n",
       html_text(results.name));
   if (are_seas(results)) out += sea_answer(results);
-  for (const MethodSummary& s : summaries_of(results)) {
-    out += fmt::format(
-        "<li><strong>{}</strong>: the mean wave height is "
-        "within {:.2f} % of the set height in every "
-        "setting; single waves scatter by {:.2f} to {:.2f} cm",
-        html_text(s.method), s.worst_error_percent, cm(s.least_std_m), cm(s.largest_std_m));
-    if (std::isfinite(s.worst_std_over_bound))
-      out += fmt::format(", at most {:.2f} times the physical limit", s.worst_std_over_bound);
-    out += ".</li>\n";
-  }
+  for (const MethodSummary& s : summaries_of(results)) out += height_answer(s);
+  out += direction_answer(results);
   out += "</ul>\n";
   if (!results.complete) out += "<p class=\"worse\">This campaign is not complete.</p>\n";
   return out +
@@ -85,12 +100,12 @@ std::string results_table(const CampaignResults& results) {
       "deviation. A number leads to the runs behind it.",
       {"Period s", "Height cm", "Method", "Waves", "Mean", "Error rate %", "U (k = 2)", "Std", "Limit",
        "Std / limit", "RMSE"});
+  const SettingColumns set(results.cells);
   for (const CellResult& cell : results.cells) {
     const evaluation::HeightStatistics& s = cell.statistics;
     if (tells_direction_alone(cell)) continue;
     const std::string link = fmt::format("#{}", cell_id(cell));
-    table.add_row({number_cell(cell.period_s, cell.period_s == std::floor(cell.period_s) ? 0 : 2),
-                   number_cell(cm(cell.height_m), 0), text_cell(cell.method),
+    table.add_row({set.period(cell), set.height(cell), text_cell(cell.method),
                    number_cell(static_cast<double>(s.waves), 0, link),
                    number_cell(cm(s.mean_height_m), 2, link), number_cell(s.error_rate_percent, 2, link),
                    number_cell(cm(s.expanded_uncertainty_m), 2, link), number_cell(cm(s.std_m), 2, link),
@@ -119,21 +134,26 @@ std::string figures_section(const fs::path& directory) {
 
 std::string budget_section(const CampaignResults& results) {
   HtmlTable table(
-      std::string("Contributions to the standard uncertainty of the mean height, in mm (k = 1). Type A: from the "
-                  "scatter of single waves") +
-          (are_seas(results) ? ", which on a sea is mostly its own" : "") + "; B: from what is known beforehand.",
+      std::string(
+          "Contributions to the standard uncertainty of the mean height, in mm (k = 1). Type A: from the "
+          "scatter of single waves") +
+          (are_seas(results) ? ", which on a sea is mostly its own" : "") +
+          "; B: from what is known beforehand.",
       {"Period s", "Height cm", "Method", "Contribution", "Type", "mm"});
+  const SettingColumns set(results.cells);
   for (const CellResult& cell : results.cells) {
     for (const evaluation::Contribution& part : cell.statistics.budget)
-      table.add_row({number_cell(cell.period_s, 1), number_cell(cm(cell.height_m), 0), text_cell(cell.method),
-                     text_cell(part.name), text_cell(std::string(1, part.type)),
-                     number_cell(1000 * part.sigma_m, 3)});
+      table.add_row({set.period(cell), set.height(cell), text_cell(cell.method), text_cell(part.name),
+                     text_cell(std::string(1, part.type)), number_cell(1000 * part.sigma_m, 3)});
   }
   if (table.empty()) return "";
   return "<section id=\"budget\"><h2>Uncertainty budget</h2>\n<p>Combined in "
          "squares, times two: the "
-         "expanded uncertainty " + std::string(are_seas(results) ? "in <code>results.csv</code>" : "U of the table "
-         "above") + ".</p>\n<details><summary>All "
+         "expanded uncertainty " +
+         std::string(are_seas(results) ? "in <code>results.csv</code>"
+                                       : "U of the table "
+                                         "above") +
+         ".</p>\n<details><summary>All "
          "contributions</summary><div>" +
          table.html() + "</div></details></section>\n";
 }
@@ -196,7 +216,8 @@ std::string runs_section(const CampaignResults& results) {
     HtmlTable table(fmt::format("{}, {}", setting_text(cell), cell.method),
                     {"Run", "Repeat", "Waves", "Mean cm", "True mean cm", "Std cm", "RMSE cm",
                      "Largest error cm", "Recording"});
-    HtmlTable recordings(fmt::format("{}, {}", setting_text(cell), cell.method), {"Run", "Repeat", "Recording"});
+    HtmlTable recordings(fmt::format("{}, {}", setting_text(cell), cell.method),
+                         {"Run", "Repeat", "Recording"});
     const bool waves_told = gives_waves(results, cell.method);
     std::string waves;
     for (const RunResult& run : results.runs) {
@@ -239,13 +260,14 @@ std::string runs_section(const CampaignResults& results) {
       waves += fmt::format(
           "<details class=\"waves\" id=\"{}\"><summary>{}, {}: {} "
           "waves</summary><div>{}</div></details>\n",
-          run_id(run), html_text(run.run), html_text(run.method), run.waves.size(), list.html());
+          run_id(run), html_text(run.run), html_text(run.method), run.waves.size(),
+          list.html(HtmlTable::Caption::kHeard));
     }
     const HtmlTable& shown = waves_told ? table : recordings;
     if (shown.empty()) continue;
     out += fmt::format("<section id=\"{}\"><h3>{}, {}</h3>\n", cell_id(cell), html_text(setting_text(cell)),
                        html_text(cell.method)) +
-           shown.html() + waves + "</section>\n";
+           shown.html(HtmlTable::Caption::kHeard) + waves + "</section>\n";
   }
   return out + "</section>\n";
 }
@@ -275,20 +297,23 @@ std::string cell_id(const CellResult& cell) {
 std::vector<MethodSummary> summaries_of(const CampaignResults& results) {
   std::vector<MethodSummary> all;
   if (are_seas(results)) return all;  // no single height was set that a mean could miss
-  for (const CellResult& cell : results.cells) {
-    const evaluation::HeightStatistics& s = cell.statistics;
-    if (s.waves < 1) continue;
-    auto it =
-        std::find_if(all.begin(), all.end(), [&](const MethodSummary& m) { return m.method == cell.method; });
-    if (it == all.end())
-      it = all.insert(all.end(), {.method = cell.method, .least_std_m = s.std_m, .largest_std_m = s.std_m});
-    it->worst_error_percent = std::max(it->worst_error_percent, s.error_rate_percent);
-    it->least_std_m = std::min(it->least_std_m, s.std_m);
-    it->largest_std_m = std::max(it->largest_std_m, s.std_m);
-    const double ratio = s.std_m / s.bound_std_m;
-    if (std::isfinite(ratio))
-      it->worst_std_over_bound =
-          std::isfinite(it->worst_std_over_bound) ? std::max(it->worst_std_over_bound, ratio) : ratio;
+  for (const std::string& method : methods_of(results)) {
+    MethodSummary summary;
+    summary.method = method;
+    for (const CellResult& cell : results.cells) {
+      const evaluation::HeightStatistics& s = cell.statistics;
+      if (cell.method != method) continue;
+      ++summary.settings;
+      if (s.waves < 1) {
+        summary.without_waves.push_back(setting_text(cell));
+        continue;
+      }
+      summary.worst_error_percent = std::max(summary.worst_error_percent, s.error_rate_percent);
+      summary.least_std_m = std::fmin(summary.least_std_m, s.std_m);  // unknown of a single wave
+      summary.largest_std_m = std::fmax(summary.largest_std_m, s.std_m);
+      summary.worst_std_over_bound = std::fmax(summary.worst_std_over_bound, s.std_m / s.bound_std_m);
+    }
+    all.push_back(std::move(summary));
   }
   return all;
 }

@@ -11,8 +11,10 @@ namespace waverig::render {
 // What is said of the whole campaign of one method, for the first lines; of irregular seas nothing.
 struct MethodSummary {
   std::string method;
-  double worst_error_percent = 0;  // of the mean height, over the settings
-  double least_std_m = 0, largest_std_m = 0;
+  std::size_t settings = 0;
+  std::vector<std::string> without_waves;  // settings where it told none
+  double worst_error_percent = 0;          // of the mean height, over the others
+  double least_std_m = estimator::kUnknown, largest_std_m = estimator::kUnknown;
   double worst_std_over_bound = estimator::kUnknown;
 };
 std::vector<MethodSummary> summaries_of(const evaluation::CampaignResults& results);
@@ -23,8 +25,8 @@ std::vector<MethodSummary> summaries_of(const evaluation::CampaignResults& resul
 // is broken.
 std::string report_html(const evaluation::CampaignResults& results, const std::filesystem::path& directory);
 
-// Two campaigns side by side: better, worse, or not significant, cell by cell. Throws UserError where they have no
-// cell in common.
+// Two campaigns side by side: better, worse, or not significant, cell by cell. Throws UserError where they
+// have no cell in common.
 std::string comparison_html(const evaluation::CampaignResults& baseline,
                             const std::filesystem::path& baseline_directory,
                             const evaluation::CampaignResults& candidate,

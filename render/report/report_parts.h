@@ -1,12 +1,44 @@
 // The sections that report.html is put together from, each a piece of HTML; empty where there is nothing to
 // say.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 
 #include "estimator/evaluation/results.h"
+#include "motion/kinematics/frames.h"
+#include "render/report/html.h"
 
 namespace waverig::render {
+
+// Set periods and heights as columns of a table: each with the decimals that the one in need of most has.
+class SettingColumns {
+ public:
+  template <class Rows>
+  explicit SettingColumns(const Rows& rows) {
+    for (const auto& row : rows) {
+      period_decimals_ = std::max(period_decimals_, decimals_of(row.period_s));
+      height_decimals_ = std::max(height_decimals_, decimals_of(row.height_m / kCentimetre));
+    }
+  }
+  template <class Row>
+  HtmlCell period(const Row& row) const {
+    return number_cell(row.period_s, period_decimals_);
+  }
+  template <class Row>
+  HtmlCell height(const Row& row) const {
+    return number_cell(row.height_m / kCentimetre, height_decimals_);
+  }
+
+ private:
+  static int decimals_of(double value) {
+    int decimals = 0;
+    for (; decimals < 2 && std::abs(value - std::round(value)) > 1e-6; ++decimals) value *= 10;
+    return decimals;
+  }
+  int period_decimals_ = 0, height_decimals_ = 0;
+};
 
 // Where a number of the tables leads: the runs of a setting and method.
 std::string cell_id(const evaluation::CellResult& cell);
@@ -15,7 +47,8 @@ std::string cell_id(const evaluation::CellResult& cell);
 std::string sea_answer(const evaluation::CampaignResults& results);
 std::string sea_results_table(const evaluation::CampaignResults& results);
 
-// Where the waves came from, where a method tells it.
+// Where the waves came from, where a method tells it: the first lines, and the table.
+std::string direction_answer(const evaluation::CampaignResults& results);
 std::string direction_results_table(const evaluation::CampaignResults& results);
 
 // The rig, the sensor with its calibration, and the settings as resolved.

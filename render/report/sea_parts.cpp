@@ -73,24 +73,24 @@ std::string sea_results_table(const CampaignResults& results) {
       "and the wandering of its bias (Wiener). Hm0 and Tm02: measured against those of the true heave. A "
       "number leads to the runs behind it.",
       heads);
+  const SettingColumns set(results.cells);
   for (const CellResult& cell : results.cells) {
     const std::string link = fmt::format("#{}", cell_id(cell));
     const auto number = [&](double value, int decimals) { return number_cell(value, decimals, link); };
     const estimator::SeaState& sea = cell.sea.sea;
-    std::vector<HtmlCell> cells = {
-        number_cell(cell.period_s, cell.period_s == std::floor(cell.period_s) ? 0 : 2),
-        number_cell(cm(cell.height_m), 0),
-        text_cell(cell.method),
-        number(static_cast<double>(cell.statistics.waves), 0),
-        number(cm(cell.heave_rmse_m), 2),
-        number(heave_percent(cell), 2),
-        number(bound_percent(cell), 2),
-        number(cell.heave_gain, 4),
-        number(1000 * cell.heave_lag_s, 1),
-        number(cm(sea.hm0_m), 2),
-        number(hm0_percent(cell), 2),
-        number(sea.tm02_s, 3),
-        number(tm02_percent(cell), 2)};
+    std::vector<HtmlCell> cells = {set.period(cell),
+                                   set.height(cell),
+                                   text_cell(cell.method),
+                                   number(static_cast<double>(cell.statistics.waves), 0),
+                                   number(cm(cell.heave_rmse_m), 2),
+                                   number(heave_percent(cell), 2),
+                                   number(bound_percent(cell), 2),
+                                   number(cell.heave_gain, 4),
+                                   number(1000 * cell.heave_lag_s, 1),
+                                   number(cm(sea.hm0_m), 2),
+                                   number(hm0_percent(cell), 2),
+                                   number(sea.tm02_s, 3),
+                                   number(tm02_percent(cell), 2)};
     if (directions) cells.push_back(number(sea.mean_direction_rad / kDegree, 1));
     table.add_row(std::move(cells));
   }

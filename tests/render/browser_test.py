@@ -20,7 +20,7 @@ document.addEventListener("securitypolicyviolation", (e) => faults.push("outside
 </script>"""
 
 LAST = """<script>
-addEventListener("load", () => {
+addEventListener("load", async () => {
   const found = {faults};
   const check = (name, good) => { if (!good) faults.push("failed: " + name); };
   const root = document.documentElement;
@@ -46,7 +46,13 @@ addEventListener("load", () => {
   check("keeps its rows", values().sort().join() === before.sort().join());
   document.querySelector("figure button").click();
   const dialog = document.querySelector("dialog");
+  if (innerWidth >= 1280)
+    for (const box of document.querySelectorAll(".scroll"))
+      if (box.offsetParent) check("table cut off: " + box.ariaLabel, box.scrollWidth <= box.clientWidth);
   check("opens large", dialog.open && dialog.querySelector("img").src.startsWith("data:image/png"));
+  const large = dialog.querySelector("img");
+  if (!large.complete) await new Promise((loaded) => large.addEventListener("load", loaded));
+  check("as large as it is", large.naturalWidth > 100 && large.clientWidth === large.naturalWidth);
   dialog.click();
   check("closes", !dialog.open);
   const wave = document.querySelector("tr[id*='-wave-']");

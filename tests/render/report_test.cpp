@@ -130,6 +130,49 @@ TEST(Report, SummaryIsTheWorstOfAllSettings) {
   EXPECT_NEAR(baseline.worst_std_over_bound, 0.01 / 0.0026, 1e-9);
 }
 
+TEST(Report, ASettingWithoutWavesIsNoSuccess) {
+  const test::TemporaryFolder empty;
+  evaluation::CampaignResults results = test::example_campaign();
+  EXPECT_NE(report_html(results, empty.path()).find("of the set height in every setting; single"), std::string::npos);
+  for (auto& cell : results.cells)
+    if (cell.method == "lee2014" && cell.period_s == 12 && cell.height_m == 0.6) cell.statistics = {};
+  EXPECT_NE(report_html(results, empty.path())
+                .find("<strong>lee2014</strong>: the mean wave height is within 2.00 % of the set height in 5 of 6 "
+                      "settings; none were measured at 12 s, 60 cm; single waves"),
+            std::string::npos);
+  for (auto& cell : results.cells)
+    if (cell.method == "lee2014") cell.statistics = {};
+  EXPECT_NE(report_html(results, empty.path()).find("lee2014</strong>: no single wave was measured"), std::string::npos);
+}
+
+TEST(Report, AnswersWhereTheWavesCameFrom) {
+  const test::TemporaryFolder empty;
+  evaluation::CampaignResults results = test::example_campaign();
+  EXPECT_EQ(report_html(results, empty.path()).find("where the waves came from is"), std::string::npos);
+  double rmse_deg = 0.2;
+  for (auto& cell : results.cells) {
+    if (cell.method != "harmonic") continue;
+    cell.sea.sea.spread_rad = 0.1;
+    cell.sea.sea.check_factor = 1 + rmse_deg / 100;
+    cell.direction_rmse_rad = (rmse_deg += 0.1) * kDegree;
+  }
+  EXPECT_NE(report_html(results, empty.path())
+                .find("<strong>harmonic</strong>: where the waves came from is within 0.80\u00B0 of the true direction "
+                      "(rms over the runs of a setting) in every setting; the check factor is 1.002 to 1.007."),
+            std::string::npos);
+}
+
+TEST(Report, PeriodsOfATableHaveTheSameDecimals) {
+  const test::TemporaryFolder empty;
+  evaluation::CampaignResults results = test::example_campaign();
+  EXPECT_NE(report_html(results, empty.path()).find(">6</td><td data-value=\"60\">60</td>"), std::string::npos);
+  for (auto& cell : results.cells)
+    if (cell.period_s == 12) cell.period_s = 12.5;
+  const std::string html = report_html(results, empty.path());
+  EXPECT_NE(html.find(">6.0</td><td data-value=\"60\">60</td>"), std::string::npos);
+  EXPECT_NE(html.find(">12.5</td><td data-value=\"60\">60</td>"), std::string::npos);
+}
+
 TEST(Report, OfSeasSpeaksOfHeaveAndSeaStates) {
   const test::TemporaryFolder empty;
   const evaluation::CampaignResults seas = test::example_sea_campaign();
