@@ -26,10 +26,14 @@ HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& 
   // An even grid over the common time, both series on it, filtered alike.
   const auto count = static_cast<std::size_t>((end - begin) / step) + 1;
   std::vector<double> h(count), t(count);
+  std::vector<bool> told(count);  // not only by the straight line over a gap
+  const std::int64_t longest = longest_step(truth.utime),
+                     longest_told = heave.utime.size() < 2 ? 0 : longest_step(heave.utime);
   for (std::size_t i = 0; i < count; ++i) {
     const std::int64_t utime = begin + static_cast<std::int64_t>(i) * step;
     h[i] = estimate.at(utime);
     t[i] = reference.at(utime);
+    told[i] = estimate.bridged() <= longest_told && reference.bridged() <= longest;
   }
   const double rate_hz = 1 / (static_cast<double>(step) * kMicrosecond);
   if (settings.high_pass_hz > 0) {
@@ -46,7 +50,7 @@ HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& 
     const bool known =
         std::isfinite(truth.heave_m[row]) &&
         (row + 1 == truth.utime.size() || truth.utime[row] == utime || std::isfinite(truth.heave_m[row + 1]));
-    if (!known || (!truth.moving.empty() && !truth.moving[row])) continue;
+    if (!known || !told[i] || (!truth.moving.empty() && !truth.moving[row])) continue;
     comparison.add(h[i], t[i], (t[i + 1] - t[i - 1]) * rate_hz / 2);
   }
   return comparison;

@@ -10,8 +10,8 @@ struct AgainstTruthSettings {
   double edge_s = 0;        // left out at both ends of what is compared
 };
 
-// Compares at the truth's instants that lie within the heave series and whose truth is known; where the truth
-// marks what is moving, only there. Throws UserError where the two do not overlap.
+// Compares at the truth's instants that lie within the heave series, in no gap of either, and whose truth is
+// known; where the truth marks what is moving, only there. Throws UserError where the two do not overlap.
 HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& truth,
                                    const AgainstTruthSettings& settings);
 

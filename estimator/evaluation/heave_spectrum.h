@@ -16,14 +16,18 @@ struct HeaveSpectrumSettings {
 
 struct HeaveSpectrum {
   std::int64_t start_utime = 0;
-  double duration_s = 0;
+  double duration_s = 0;                  // without gaps
   double resolution_hz = 0;               // distance of the frequencies
   std::vector<double> frequency_hz;       // lowest_hz and above
   std::vector<double> density_m2_per_hz;  // one-sided
+  std::int32_t flags = 0;
 };
 
-// The series is brought onto an even grid of its median interval first; unknown values (NaN) are bridged by
-// straight lines. Empty where fewer than 16 samples are known or nearly all of the time is gap.
+// The series is brought onto an even grid of its median interval first; single values that are unknown (NaN)
+// are bridged by straight lines. No block reaches over a gap (three median intervals), and the flag tells of
+// any value that is missing. Hann windows weigh a record's ends and what lies between two blocks less: the
+// density is scaled to the mean square of all that is known, between the lowest and the highest frequency.
+// Empty where no 16 samples are without a gap.
 HeaveSpectrum spectrum_of(std::span<const std::int64_t> utime, std::span<const double> heave_m,
                           const HeaveSpectrumSettings& settings = {});
 

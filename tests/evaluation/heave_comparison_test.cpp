@@ -105,6 +105,21 @@ TEST(HeaveAgainstTruth, LeavesOutWhatIsUnknownOrAtRest) {
   EXPECT_LT(c.rmse_m(), 1e-3);
 }
 
+// The straight line over a gap is nobody's estimate, and nobody's truth.
+TEST(HeaveAgainstTruth, LeavesOutTheGapsOfEither) {
+  const HeaveSeries whole = series(100, 100, 0, 0);
+  HeaveSeries gap;
+  for (std::size_t i = 0; i < whole.utime.size(); ++i) {
+    if (i > 4000 && i < 6000) continue;
+    gap.utime.push_back(whole.utime[i]);
+    gap.heave_m.push_back(whole.heave_m[i]);
+  }
+  for (const auto& c : {compare_with_truth(gap, whole, {}), compare_with_truth(whole, gap, {})}) {
+    EXPECT_NEAR(c.samples(), 8000, 4);
+    EXPECT_LT(c.rmse_m(), 1e-6);
+  }
+}
+
 TEST(HeaveAgainstTruth, RefusesSeriesThatDoNotMeet) {
   HeaveSeries late = series(100, 10, 0, 0);
   for (auto& utime : late.utime) utime += 100'000'000;

@@ -10,6 +10,7 @@
 
 #include "estimator/evaluation/netcdf_file.h"
 #include "estimator/evaluation/zero_crossing.h"
+#include "lcmtypes/flags.h"
 #include "motion/kinematics/random.h"
 #include "tests/evaluation/scratch.h"
 
@@ -74,8 +75,49 @@ TEST(HeaveSpectrum, BridgesGapsAndKnowsNothingOfTooLittle) {
   EXPECT_TRUE(spectrum_of({}, {}).frequency_hz.empty());
   s.utime.back() =
       std::numeric_limits<std::int64_t>::max() / 2;  // centuries of gap are no reason to fill memory
-  EXPECT_TRUE(spectrum_of(s.utime, s.heave_m).frequency_hz.empty());
+  EXPECT_NEAR(sea_of(spectrum_of(s.utime, s.heave_m)).hm0_m, 2 / std::sqrt(2), 2e-3);
+  EXPECT_LT(spectrum_of(s.utime, s.heave_m).duration_s, 600);
+  EXPECT_TRUE(spectrum_of(std::span(s.utime).first(15), std::span(s.heave_m).first(15)).frequency_hz.empty());
   EXPECT_TRUE(std::isnan(sea_of({}).hm0_m));
+}
+
+// Groups of waves that come where windows weigh little count as much as any other: Hm0 is that of the record.
+TEST(HeaveSpectrum, CountsEveryPartOfTheRecordAlike) {
+  for (const double duration_s : {150.0, 330.0, 1000.0}) {
+    HeaveSeries s = series({}, duration_s, 4);
+    double n = 0, sum = 0, squares = 0;
+    for (std::size_t i = 0; i < s.heave_m.size(); ++i) {
+      const double t = static_cast<double>(i) / 4;
+      s.heave_m[i] = (1 + 3 * std::exp(-t / 20)) * std::cos(kTwoPi * 0.12 * t);
+      n += 1;
+      sum += s.heave_m[i];
+      squares += s.heave_m[i] * s.heave_m[i];
+    }
+    const double hm0_m = 4 * std::sqrt(squares / n - sum * sum / (n * n));
+    EXPECT_NEAR(sea_of(spectrum_of(s.utime, s.heave_m)).hm0_m / hm0_m, 1, 0.005) << duration_s;
+  }
+}
+
+// The straight line over a gap is no sea: minutes that are missing do not lower Hm0, whether their rows are empty or
+// not there, and the flag tells of them.
+TEST(HeaveSpectrum, LeavesOutWhatIsMissing) {
+  const HeaveSeries s = series({{0.5, 0.1, 0}}, 900, 10);
+  EXPECT_EQ(sea_of(spectrum_of(s.utime, s.heave_m)).flags, 0);
+  HeaveSeries empty = s, missing;
+  for (std::size_t i = 0; i < s.utime.size(); ++i) {
+    if (i > 2000 && i < 5000) {
+      empty.heave_m[i] = estimator::kUnknown;
+    } else {
+      missing.utime.push_back(s.utime[i]);
+      missing.heave_m.push_back(s.heave_m[i]);
+    }
+  }
+  for (const HeaveSeries& gap : {empty, missing}) {
+    const estimator::SeaState sea = sea_of(spectrum_of(gap.utime, gap.heave_m));
+    EXPECT_NEAR(sea.hm0_m, 2 / std::sqrt(2), 5e-3);
+    EXPECT_NEAR(sea.duration_s, 600, 1);
+    EXPECT_EQ(sea.flags, flag::kGap);
+  }
 }
 
 TEST(NetcdfFile, HoldsHeaveWavesSpectrumAndParametersForAnyReader) {
