@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace waverig::evaluation {
+namespace {
+
+// Heave and rate of a motion are hardly correlated. Where they are the same but for a factor, as at samples
+// that all meet the same two points of a wave, neither gain nor lag is to be had.
+constexpr double kLeastIndependent = 1e-3;
+
+}  // namespace
 
 void HeaveComparison::add(double heave_m, double true_heave_m, double true_rate_mps, double sigma_m) {
   const double h = heave_m, t = true_heave_m, r = true_rate_mps, e = h - t;
@@ -39,7 +46,8 @@ HeaveComparison::Regression HeaveComparison::regression() const {
   const double tt = tt_ - t_ * t_ / n_, rr = rr_ - r_ * r_ / n_, tr = tr_ - t_ * r_ / n_;
   const double ht = ht_ - h_ * t_ / n_, hr = hr_ - h_ * r_ / n_;
   const double determinant = tt * rr - tr * tr;
-  if (!(determinant > 0)) return {estimator::kUnknown, estimator::kUnknown, estimator::kUnknown};
+  if (!(determinant > kLeastIndependent * tt * rr))
+    return {estimator::kUnknown, estimator::kUnknown, estimator::kUnknown};
   return {(ht * rr - hr * tr) / determinant, (hr * tt - ht * tr) / determinant, std::sqrt(rr / tt)};
 }
 

@@ -42,6 +42,18 @@ TEST(HeaveComparison, SigmaRatioIsOneForAnHonestEstimate) {
   EXPECT_NEAR(sure.sigma_ratio(), 2, 0.04);
 }
 
+// Two samples a wave, always the same: any gain would do.
+TEST(HeaveComparison, KnowsNoGainOfSamplesThatMeetTheSamePointsOfEachWave) {
+  HeaveComparison c;
+  for (int i = 0; i < 100; ++i) {
+    const double phase = 0.3 + std::numbers::pi * i + 1e-6 * i;
+    c.add(0.9 * std::sin(phase), std::sin(phase), 1.5 * std::cos(phase));
+  }
+  EXPECT_TRUE(std::isnan(c.gain()));
+  EXPECT_TRUE(std::isnan(c.lag_s()));
+  EXPECT_LT(c.rmse_m(), 0.1);
+}
+
 TEST(HeaveComparison, KnowsNothingOfNothing) {
   const HeaveComparison c;
   EXPECT_TRUE(std::isnan(c.rmse_m()));

@@ -11,6 +11,7 @@
 
 #include "estimator/evaluation/csv_reader.h"
 #include "estimator/evaluation/heave_csv.h"
+#include "estimator/evaluation/heave_spectrum.h"
 #include "motion/kinematics/random.h"
 #include "tests/evaluation/recordings.h"
 
@@ -173,6 +174,15 @@ TEST_F(Waverider, HeightsAndPeriodsAgreeWithTheBuoyWithinHalfAPercentOnAverage) 
   EXPECT_LT(std::abs(t13), 0.5);
   EXPECT_LT(std::abs(period), 0.5);
   EXPECT_LT(std::abs(mean), 0.5);
+}
+
+TEST_F(Waverider, Hm0IsFourStandardDeviationsOfEachRecord) {
+  for (const HalfHour& h : half_hours) {
+    double squares = 0;
+    for (const double z : h.heave.heave_m) squares += estimator::square(z - h.mean_m);
+    const double hm0_m = 4 * std::sqrt(squares / static_cast<double>(h.heave.heave_m.size()));
+    EXPECT_NEAR(sea_of(spectrum_of(h.heave.utime, h.heave.heave_m)).hm0_m / hm0_m, 1, 5e-4) << h.record;
+  }
 }
 
 // What is left in the mean height is the zero line: at a resolution of 1 cm some waves only touch zero, and
