@@ -24,16 +24,18 @@ void give_width(double& low, double& high, bool log) {
 
 }  // namespace
 
-void set_limits(const Axis& axis, const Extent& data, bool padded, Mapping& out) {
+void set_limits(const Axis& axis, const Extent& data, bool padded, bool on_base, Mapping& out) {
   out.scale = axis.scale;
   const bool log = axis.scale == Scale::kLog;
   const auto usable = [log](double v) { return std::isfinite(v) && (!log || v > 0); };
   Extent extent = data;
   if (axis.include_zero && !log) extent.add(0.0);
   double low = extent.low, high = extent.high;
-  if (!axis.categories.empty()) {
+  if (!axis.categories.empty() || !axis.groups.empty()) {
+    std::size_t places = axis.categories.size();
+    for (const AxisGroup& group : axis.groups) places += group.places;
     low = -0.5;
-    high = static_cast<double>(axis.categories.size()) - 0.5;
+    high = static_cast<double>(places) - 0.5;
     padded = false;
   } else if (extent.empty()) {
     low = usable(axis.low)    ? axis.low
@@ -53,8 +55,9 @@ void set_limits(const Axis& axis, const Extent& data, bool padded, Mapping& out)
     high *= factor;
   } else {
     const double room = share * (high - low);
-    if (!(low == 0 && extent.low >= 0)) low -= room;  // bars stand on their base
-    if (!(high == 0 && extent.high <= 0)) high += room;
+    on_base |= axis.include_zero;
+    if (!(on_base && low == 0)) low -= room;
+    if (!(on_base && high == 0)) high += room;
   }
   if (usable(axis.low)) low = axis.low;
   if (usable(axis.high)) high = axis.high;
@@ -72,6 +75,16 @@ Ticks ticks_of(const Axis& axis, const Mapping& mapping, float length_px, float 
       const double at = static_cast<double>(i);
       if (at >= mapping.low && at <= mapping.high) ticks.major.push_back({at, axis.categories[i]});
     }
+    return ticks;
+  }
+  if (!axis.groups.empty()) {
+    double from = -0.5;
+    for (const AxisGroup& group : axis.groups) {
+      const double to = from + static_cast<double>(group.places);
+      ticks.major.push_back({0.5 * (from + to), group.name});
+      ticks.parting.push_back(from = to);
+    }
+    ticks.parting.pop_back();
     return ticks;
   }
   const auto make = [&](int most) {

@@ -6,7 +6,8 @@
 namespace waverig::render {
 
 // The limits of an axis out of what its marks need and what was asked for; always a positive, finite range.
-void set_limits(const Axis& axis, const Extent& data, bool padded, Mapping& out);
+// on_base: no room is left beyond a zero at its end.
+void set_limits(const Axis& axis, const Extent& data, bool padded, bool on_base, Mapping& out);
 
 // About one tick every label_px, fewer where labels of that size would touch (along: they stand beside each
 // other).

@@ -171,7 +171,8 @@ std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::Campa
   const evaluation::RunRecord run =
       chosen != nullptr ? evaluation::load_run(runs / (chosen->run + ".lcm")) : evaluation::RunRecord{};
   std::vector<NamedFigure> figures;
-  if (chosen != nullptr) figures = run_figures(results, run, options, rest_of_repeats(results, *chosen, runs));
+  if (chosen != nullptr)
+    figures = run_figures(results, run, options, rest_of_repeats(results, *chosen, runs));
   for (NamedFigure& figure : result_figures(results)) figures.push_back(std::move(figure));
   std::vector<Task> tasks = tasks_of(figures, out, options);
 
@@ -179,8 +180,10 @@ std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::Campa
   if (!run.truth.empty()) motion.emplace(run, "");
   if (motion) {
     tasks.insert(tasks.begin(),
-                 {out / (motion->on_sea() ? "buoy.png" : "rig.png"), [&](Canvas& canvas, const std::filesystem::path& path) {
-                    const double shown_s = motion->begin_s() + 0.7 * (motion->end_s() - motion->begin_s());
+                 {out / (motion->on_sea() ? "buoy.png" : "rig.png"),
+                  [&](Canvas& canvas, const std::filesystem::path& path) {
+                    const double shown_s =
+                        motion->crest_near_s(motion->begin_s() + 0.7 * (motion->end_s() - motion->begin_s()));
                     save_rig_picture(*motion, shown_s, canvas, path, options.theme, options.provenance);
                   }});
   }

@@ -29,6 +29,12 @@ inline constexpr int kFaintInk = -3;  // the same, fainter: bounds, references
 
 enum class Scale { kLinear, kLog, kTime };  // kTime: seconds since 1970, shown as UTC
 
+// Neighbouring places 0, 1, 2, … of an axis under one name.
+struct AxisGroup {
+  std::string name;
+  std::size_t places = 1;
+};
+
 struct Axis {
   std::string label{};
   std::string unit{};  // shown in brackets behind the label
@@ -37,6 +43,7 @@ struct Axis {
          high = kAuto;                    // limits; equal or reversed ones are put right
   std::vector<std::string> categories{};  // names at 0, 1, 2, … instead of
                                           // numbers; '\n' breaks a name
+  std::vector<AxisGroup> groups{};        // instead of categories where those are too many to be named
   double padding = kAuto;                 // share of the range left free at both ends
   bool include_zero = false;
   bool whole_numbers = false;  // ticks at integers only
@@ -107,7 +114,7 @@ struct HeatMap {
   bool log_colors = false;
   bool color_bar = true;  // false where another panel's bar serves
   int decimals = -1;      // of the number written into each cell, fewer where they do not fit; on logarithmic
-                      // colours its significant digits, at least two; -1: none
+                          // colours its significant digits, at least two; -1: none
   std::vector<std::string> texts{};  // written into the cells instead of the numbers
 };
 

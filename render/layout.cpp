@@ -136,6 +136,7 @@ class Planner {
         sum.has_data |= e.has_data;
         sum.pad_x |= e.has_data && e.pad_x;
         sum.pad_y |= e.has_data && e.pad_y;
+        sum.on_base |= e.on_base;
       }
       all.push_back(sum);
     }
@@ -143,14 +144,15 @@ class Planner {
       PanelPlan& p = plan_.panels[i];
       p.has_data = all[i].has_data;
       Extent x = all[i].x;
-      bool pad_x = all[i].pad_x;
+      bool pad_x = all[i].pad_x, on_base = all[i].on_base;
       for (std::size_t k = 0; figure_.share_x && k < all.size(); ++k) {
         if (plan_.panels[k].column != p.column) continue;
         x.add(all[k].x);
         pad_x |= all[k].pad_x;
+        on_base |= all[k].on_base;
       }
-      set_limits(p.panel.x, x, pad_x && !p.panel.polar, p.x);
-      set_limits(p.panel.y, all[i].y, all[i].pad_y && !p.panel.polar, p.y);
+      set_limits(p.panel.x, x, pad_x && !p.panel.polar, on_base, p.x);
+      set_limits(p.panel.y, all[i].y, all[i].pad_y && !p.panel.polar, all[i].on_base, p.y);
     }
   }
 
@@ -267,6 +269,7 @@ class Planner {
     if (!p.panel.x.categories.empty()) {
       fit_categories(p.x_ticks.major, p.plot.width() / static_cast<float>(p.x.high - p.x.low), fonts_, tick);
     }
+    if (!p.panel.x.groups.empty()) thin_out(p.x_ticks.major, p.x, tick);
     if (!p.panel.y.categories.empty()) {
       const float most =
           0.4F * static_cast<float>(plan_.width_px) / static_cast<float>(std::max(1, figure_.columns));
@@ -280,7 +283,7 @@ class Planner {
       m.bottom =
           (kTickLength + kTickGap) * pt + line_height(tick) * static_cast<float>(most_lines(p.x_ticks));
       if (!axis_text(p.panel.x, p.x_ticks).empty()) m.bottom += line_height(label) + 1 * pt;
-      if (!p.x_ticks.major.empty() && p.panel.x.categories.empty()) {
+      if (!p.x_ticks.major.empty() && p.panel.x.categories.empty() && p.panel.x.groups.empty()) {
         const Tick& last = p.x_ticks.major.back();
         m.right = std::max(0.0F, p.x(last.value) + 0.5F * fonts_.width_px(last.label, tick) - p.plot.right);
         const Tick& first = p.x_ticks.major.front();
@@ -295,6 +298,18 @@ class Planner {
       m.right =
           (kColorBarGap + kColorBarWidth + kTickLength + kTickGap) * pt + widest_label(ticks, fonts_, tick);
       if (!axis_text(axis, ticks).empty()) m.right += line_height(label) + 2 * pt;
+    }
+  }
+
+  // Names that would touch the one before are left out.
+  void thin_out(std::vector<Tick>& ticks, const Mapping& x, float size_px) const {
+    float taken_px = -1e9F;
+    for (Tick& t : ticks) {
+      const float half_px = 0.5F * fonts_.width_px(t.label, size_px);
+      if (x(t.value) - half_px < taken_px)
+        t.label.clear();
+      else
+        taken_px = x(t.value) + half_px + 0.4F * size_px;
     }
   }
 

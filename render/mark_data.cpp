@@ -32,7 +32,7 @@ struct ExtentsOf {
           m.horizontal ? add(length, edge) : add(edge, length);
       }
     }
-    out.pad_x = true;
+    out.pad_x = out.on_base = true;
   }
   void operator()(const ErrorBars& m) {
     const std::size_t n = std::min({m.x.size(), m.y.size(), m.minus.size(), m.plus.size()});

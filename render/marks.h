@@ -38,6 +38,7 @@ struct MarkExtents {
   Extent x, y;
   bool pad_x = false, pad_y = true;  // free space at the ends: points want it
                                      // along x, heat maps nowhere
+  bool on_base = false;              // bars: an end of their axis that is their base stays there
   bool has_data = false;
 };
 MarkExtents extents_of(const Mark& mark, Scale x_scale, Scale y_scale);

@@ -36,8 +36,12 @@ void draw_lines_of_text(Painter& painter, Vec2 at, const std::string& text, floa
 
 void draw_grid(const PanelPlan& p, const PanelView& v) {
   v.painter.fill_rect(p.plot, v.colors().panel);
+  const float bottom = p.plot.bottom + (p.shows_x_labels ? 2 * kTickLength * v.pt : 0);
+  for (const double at : p.x_ticks.parting)
+    line(v, {crisp(p.x(at)), p.plot.top}, {crisp(p.x(at)), bottom},
+         mixed(v.colors().grid, v.colors().faint_ink, 0.3F), 0.5F);
   for (const Tick& t : p.x_ticks.major) {
-    if (p.panel.x.categories.empty())
+    if (p.panel.x.categories.empty() && p.panel.x.groups.empty())
       line(v, {crisp(p.x(t.value)), p.plot.top}, {crisp(p.x(t.value)), p.plot.bottom}, v.colors().grid, 0.5F);
   }
   for (const Tick& t : p.y_ticks.major) {
@@ -58,7 +62,7 @@ void draw_axes(const PanelPlan& p, const PanelView& v) {
     line(v, {left, crisp(p.y(minor))}, {left - 0.5F * length, crisp(p.y(minor))}, ink, 0.4F);
   for (const Tick& t : p.x_ticks.major) {
     const float x = crisp(p.x(t.value));
-    line(v, {x, bottom}, {x, bottom + length}, ink, 0.6F);
+    if (p.panel.x.groups.empty()) line(v, {x, bottom}, {x, bottom + length}, ink, 0.6F);
     if (p.shows_x_labels)
       draw_lines_of_text(v.painter, {x, bottom + length + kTickGap * v.pt}, t.label, 1.3F * tick_px,
                          {.size_px = tick_px, .color = ink, .h = HAlign::kCenter, .v = VAlign::kTop});
@@ -251,6 +255,7 @@ void prepare_fonts(const Figure& figure, FontBook& fonts) {
       fonts.require(axis->label);
       fonts.require(axis->unit);
       for (const std::string& name : axis->categories) fonts.require(name);
+      for (const AxisGroup& group : axis->groups) fonts.require(group.name);
     }
     for (const Mark& mark : panel.marks) {
       fonts.require(name_of(mark));

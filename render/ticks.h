@@ -14,8 +14,9 @@ struct Tick {
 struct Ticks {
   std::vector<Tick> major;
   std::vector<double> minor;
-  std::string suffix;  // belongs to the axis label: "×10⁻⁶", "+ 12000000", a
-                       // date; often empty
+  std::vector<double> parting;  // where one group ends and the next begins: the major ones are names alone
+  std::string suffix;           // belongs to the axis label: "×10⁻⁶", "+ 12000000", a
+                                // date; often empty
 };
 
 // Major ticks within [low, high], at most `most` (or 3 where that is less), at least one; low < high, both

@@ -36,11 +36,12 @@ Panel map_panel(const Grid& grid, std::string title, HeatMap map, Value value) {
 Figure maps_figure(std::string title, std::string subtitle, std::vector<Panel> panels, double low,
                    double high, const Grid& grid) {
   Figure figure{.title = std::move(title), .subtitle = std::move(subtitle)};
-  const bool wide = grid.periods_s.size() > 6;  // side by side they would leave no room for numbers
-  figure.columns = wide                 ? 1
-                   : panels.size() <= 3 ? static_cast<int>(panels.size())
-                   : panels.size() == 4 ? 2
-                                        : 3;
+  // No more side by side than leave room for the numbers.
+  std::size_t most = 3;
+  if (grid.periods_s.size() > 5 || panels.size() == 4) most = 2;
+  if (grid.periods_s.size() > 6) most = 1;
+  figure.columns = static_cast<int>(std::min(panels.size(), most));
+  const bool wide = figure.columns == 1;
   const double rows = std::ceil(static_cast<double>(panels.size()) / std::max(1, figure.columns));
   const double heights = static_cast<double>(grid.heights_m.size());
   figure.height_mm = 22 + rows * (wide ? 20 + 6 * heights : std::clamp(26 + 9 * heights, 45.0, 90.0));

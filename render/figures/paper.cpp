@@ -10,6 +10,7 @@
 
 #include "render/figures/run_time.h"
 #include "render/published.h"
+#include "render/ticks.h"
 
 namespace waverig::render {
 namespace {
@@ -18,6 +19,14 @@ namespace {
 double shown_end_s(const evaluation::RunRecord& run, double end_s) {
   constexpr double kMostPeriods = 60;
   return std::min(end_s, since_start_s(run, run.steady_begin_utime) + kMostPeriods * run.period_s);
+}
+std::string shown_text(double shown_s, double end_s) {
+  return shown_s < end_s ? fmt::format("; shown: the first {:.0f} of {:.0f} s", shown_s, end_s) : "";
+}
+
+// Hundreds of percent need no hundredths.
+std::string percent_text(double percent) {
+  return number_text(percent, percent < 10 ? 2 : percent < 100 ? 1 : 0);
 }
 
 const char* calibration_text(bool calibrated) {
@@ -29,12 +38,11 @@ bool steady(const evaluation::RunRecord& run, const estimator::Wave& wave) {
          wave.start_utime + static_cast<std::int64_t>(wave.period_s / kMicrosecond) <= run.steady_end_utime;
 }
 
-// What lies outside the steady part is shaded: it is in no statistics.
-void shade_ramps(const evaluation::RunRecord& run, double end_s, Panel& panel, bool named) {
+// What lies outside the steady part is shaded: it is in no statistics. name: in the legend.
+void shade_ramps(const evaluation::RunRecord& run, double end_s, Panel& panel, std::string name) {
   if (run.steady_end_utime <= run.steady_begin_utime) return;
   const double begin_s = since_start_s(run, run.steady_begin_utime),
                steady_end_s = since_start_s(run, run.steady_end_utime);
-  std::string name = named ? "rest and ramps, left out of the statistics" : "";
   if (begin_s > 0) panel.marks.emplace_back(Span{.from = 0, .to = begin_s, .name = std::exchange(name, "")});
   if (end_s > steady_end_s) panel.marks.emplace_back(Span{.from = steady_end_s, .to = end_s, .name = name});
 }
@@ -94,9 +102,8 @@ std::string bias_text(const evaluation::RunRecord& run, const PaperTraces& trace
           .acceleration_mps2();
   const double height_m = bias_mps2 * run.period_s * run.period_s / (std::numbers::pi * std::numbers::pi);
   return fmt::format(
-      "\nacceleration off by b = {:.3f} m/s\u00B2, which alone adds b T\u00B2/\u03C0\u00B2 = "
-      "{:.0f} cm to a height",
-      bias_mps2, height_m / kCentimetre);
+      "\nacceleration off by b = {} m/s\u00B2, which alone adds b T\u00B2/\u03C0\u00B2 = {} cm to a height",
+      number_text(bias_mps2, 3), number_text(height_m / kCentimetre, 0));
 }
 
 }  // namespace
@@ -109,10 +116,7 @@ PaperTraces recorded_traces(const evaluation::RunRecord& run, const std::string&
 }
 
 Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated) {
-  Figure figure{.title = "Inertial data measured on the wave simulator",
-                .subtitle = setting_text(run) + "; " + calibration_text(calibrated),
-                .share_x = true,
-                .height_mm = 180};
+  Figure figure{.title = "Inertial data measured on the wave simulator", .share_x = true, .height_mm = 180};
   std::vector<double> attitude_s, roll_deg, pitch_deg;
   for (const estimator::HeaveSample& sample : traces.heave) {
     const Euler euler = euler_of(sample.q_NB);
@@ -127,12 +131,15 @@ Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces&
     for (std::size_t axis = 0; axis < 3; ++axis)
       f_B[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
   }
-  const double end_s = shown_end_s(run, sample_s.empty() ? 0 : sample_s.back());
+  const double record_s = sample_s.empty() ? 0 : sample_s.back(), end_s = shown_end_s(run, record_s);
+  figure.subtitle = setting_text(run) + shown_text(end_s, record_s) + "; " + calibration_text(calibrated);
   const Axis time{.label = "Time since the start of the record", .unit = "s", .low = 0, .high = end_s};
   const auto add = [&](const char* title, const char* label, const char* unit, const std::vector<double>& x,
                        std::vector<double> y, int color) {
     Panel panel{.title = title, .x = time, .y = {.label = label, .unit = unit}};
-    shade_ramps(run, end_s, panel, false);
+    const bool first = figure.panels.empty();
+    shade_ramps(run, end_s, panel, first ? "rest and ramps" : "");
+    panel.legend = first ? Legend::kAbove : Legend::kNone;
     panel.marks.emplace_back(Line{.x = x, .y = std::move(y), .look = {.color = color, .width_pt = 0.7}});
     figure.panels.push_back(std::move(panel));
   };
@@ -151,7 +158,7 @@ Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTra
                 .share_x = true,
                 .height_mm = 120};
   Line line = uncorrected_line(run, traces);
-  Line truth{.name = "true heave", .look = {.color = 1, .width_pt = 0.8}};
+  Line truth{.name = "true heave", .look = {.color = kFaintInk, .width_pt = 0.8}};
   for (const evaluation::TruthSample& sample : run.truth) {
     truth.x.push_back(since_start_s(run, sample.utime));
     truth.y.push_back(sample.heave_m);
@@ -165,7 +172,8 @@ Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTra
              .x = time,
              .y = {.label = "Heave", .unit = "m"},
              .legend = Legend::kNone};
-  for (Panel* panel : {&whole, &rest}) shade_ramps(run, line.x.empty() ? 0 : line.x.back(), *panel, false);
+  for (Panel* panel : {&whole, &rest})
+    shade_ramps(run, line.x.empty() ? 0 : line.x.back(), *panel, "rest and ramps");
   rest.marks.emplace_back(Line{.x = line.x,
                                .y = less_parabola(line, since_start_s(run, run.steady_begin_utime),
                                                   since_start_s(run, run.steady_end_utime)),
@@ -182,7 +190,7 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
   Line trace{.name = "corrected trace, crests at zero", .look = {.color = 0}};
   Points steady_heights{.name = "single waves",
                         .look = {.color = 0, .marker = Marker::kCircle, .marker_pt = 3.5}};
-  Points other_heights{.name = "in the ramps",
+  Points other_heights{.name = "not wholly in the steady part",
                        .look = {.color = 0, .marker = Marker::kHollowCircle, .marker_pt = 3.5}};
   double n = 0, sum_m = 0, square_m2 = 0;
   for (const estimator::Wave& wave : traces.waves) {
@@ -208,7 +216,9 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
   if (n > 1) {
     // Of an irregular sea no single height is set that the mean could miss.
     const std::string error =
-        sea ? "" : fmt::format("error rate {:.2f} %, ", 100 * std::abs(mean_m - run.height_m) / run.height_m);
+        sea ? ""
+            : fmt::format("error rate {} %, ",
+                          percent_text(100 * std::abs(mean_m - run.height_m) / run.height_m));
     statistics = fmt::format("mean {:.2f} cm, {}standard deviation {:.2f} cm over {:.0f} waves",
                              mean_m / kCentimetre, error, std_m / kCentimetre, n);
   }
@@ -223,26 +233,27 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
   if (!calibrated && !sea && !traces.heave.empty()) statistics += bias_text(run, traces);
   Figure figure{.title = calibrated ? "Trace and wave heights with the accelerometer calibrated"
                                     : "Trace and wave heights without accelerometer calibration",
-                .subtitle = setting_text(run) + "\n" + traces.method + ": " + statistics,
                 .share_x = true,
                 .height_mm = 125};
-  double end_s = trace.x.empty() ? 0 : trace.x.back();
+  double record_s = trace.x.empty() ? 0 : trace.x.back();
   Line truth{.name = sea ? "true heave less half of Hm0" : "true heave less half the set height",
              .look = {.color = kFaintInk, .width_pt = 0.7}};
   for (const evaluation::TruthSample& sample : run.truth) {
     truth.x.push_back(since_start_s(run, sample.utime));
     truth.y.push_back((sample.heave_m - 0.5 * run.height_m) / kCentimetre);
-    end_s = std::max(end_s, truth.x.back());
+    record_s = std::max(record_s, truth.x.back());
   }
-  end_s = shown_end_s(run, end_s);
+  const double end_s = shown_end_s(run, record_s);
+  figure.subtitle =
+      setting_text(run) + shown_text(end_s, record_s) + "\n" + traces.method + ": " + statistics;
   const Axis time{.label = "Time since the start of the record", .unit = "s", .low = 0, .high = end_s};
   Panel top{.title = "(a) Trace of the buoy", .x = time, .y = {.label = "Heave", .unit = "cm"}};
-  shade_ramps(run, end_s, top, false);
+  shade_ramps(run, end_s, top, "");
   top.marks.emplace_back(std::move(truth));
   top.marks.emplace_back(std::move(trace));
   top.legend = Legend::kAbove;
   Panel bottom{.title = "(b) Wave height", .x = time, .y = {.label = "Wave height", .unit = "cm"}};
-  shade_ramps(run, end_s, bottom, true);
+  shade_ramps(run, end_s, bottom, "rest and ramps, left out of the statistics");
   bottom.marks.emplace_back(Rule{.at = run.height_m / kCentimetre, .name = sea ? "set Hm0" : "set height"});
   bottom.marks.emplace_back(std::move(other_heights));
   bottom.marks.emplace_back(std::move(steady_heights));

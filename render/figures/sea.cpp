@@ -43,11 +43,9 @@ Figure sea_states_figure(const CampaignResults& results) {
                 .share_x = true,
                 .height_mm = 165};
   Panel heave{.title = "(a) RMS error of the heave",
-              .x = settings_axis(settings),
+              .x = settings_axis(settings, true),
               .y = {.label = "Error", .unit = "% of Hm0", .scale = Scale::kLog},
               .legend = Legend::kAbove};
-  heave.x.label =
-      settings.size() <= 8 ? "Set peak period and Hm0" : "Set peak period in s, below it Hm0 in cm";
   const auto error_panel = [&](const char* title) {
     Panel panel{.title = title, .x = heave.x, .y = {.label = "Error", .unit = "%"}, .legend = Legend::kNone};
     panel.marks.emplace_back(

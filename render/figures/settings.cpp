@@ -46,20 +46,22 @@ std::vector<std::string> methods_of(const CampaignResults& results) {
 
 double cm(double metres) { return metres / kCentimetre; }
 
-Axis settings_axis(const std::vector<Setting>& settings) {
+Axis settings_axis(const std::vector<Setting>& settings, bool seas) {
   constexpr std::size_t kMostWithUnits = 8, kMostNamed = 20;  // more would not fit side by side
-  Axis axis{.label = "Set period and height"};
+  const char* const period = seas ? "Set peak period" : "Set period";
+  const char* const height = seas ? "Hm0" : "the height";
+  Axis axis{.label = fmt::format("{} and {}", period, seas ? "Hm0" : "height")};
   if (settings.size() > kMostNamed) {  // each period once, amid its heights
-    axis.label = "Set period in s; within each the heights rise";
-    axis.categories.assign(settings.size(), "");
-    for (std::size_t from = 0, to = 0; from < settings.size(); from = to) {
-      while (to < settings.size() && settings[to].period_s == settings[from].period_s) ++to;
-      axis.categories[(from + to - 1) / 2] = fmt::format("{:g}", settings[from].period_s);
+    axis.label = fmt::format("{} in s; within each {} rises", period, height);
+    for (const Setting& s : settings) {
+      const std::string name = fmt::format("{:g}", s.period_s);
+      if (axis.groups.empty() || axis.groups.back().name != name) axis.groups.push_back({name, 0});
+      ++axis.groups.back().places;
     }
     return axis;
   }
   const bool units = settings.size() <= kMostWithUnits;
-  if (!units) axis.label = "Set period in s, below it the height in cm";
+  if (!units) axis.label = fmt::format("{} in s, below it {} in cm", period, height);
   for (const Setting& s : settings) {
     axis.categories.push_back(units ? fmt::format("{:g} s\n{:g} cm", s.period_s, cm(s.height_m))
                                     : fmt::format("{:g}\n{:g}", s.period_s, cm(s.height_m)));

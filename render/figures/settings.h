@@ -23,7 +23,8 @@ bool tells_direction_alone(const evaluation::CellResult& cell);
 // Methods as every figure shows them: the palette number of each is its place here.
 std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
 
-Axis settings_axis(const std::vector<Setting>& settings);  // one category each, named where there is room
+// One category each, or where there is no room for their names, a group a period. seas: the heights are Hm0.
+Axis settings_axis(const std::vector<Setting>& settings, bool seas);
 
 // Whether the set heights are Hm0 of irregular seas, in most cells.
 bool are_seas(const evaluation::CampaignResults& results);

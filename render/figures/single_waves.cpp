@@ -27,7 +27,7 @@ Figure single_waves_figure(const CampaignResults& results) {
                  .y = {.label = "Estimated \u2212 true", .unit = "cm"},
                  .legend = Legend::kNone,
                  .column_span = 2};
-  residual.x = slots ? settings_axis(settings) : Axis{.label = "True height", .unit = "cm"};
+  residual.x = slots ? settings_axis(settings, false) : Axis{.label = "True height", .unit = "cm"};
   residual.marks.emplace_back(
       Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kSolid}});
   Extent heights;

@@ -33,11 +33,11 @@ Figure table2_figure(const CampaignResults& results) {
   Panel top{.title =
                 "(a) Mean less set height, \u00B1 one standard deviation "
                 "of single waves",
-            .x = settings_axis(settings),
+            .x = settings_axis(settings, false),
             .y = {.label = "Mean \u2212 set", .unit = "cm"},
             .legend = Legend::kAbove};
   Panel bottom{.title = "(b) Standard deviation of single waves",
-               .x = settings_axis(settings),
+               .x = settings_axis(settings, false),
                .y = {.label = "Standard deviation", .unit = "cm", .scale = Scale::kLog}};
   top.marks.emplace_back(Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kSolid}});
 

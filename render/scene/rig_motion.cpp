@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lcmtypes/error.h"
 #include "render/figures/run_time.h"
@@ -113,6 +114,18 @@ double RigMotion::end_s() const {
   const std::int64_t end =
       run_.steady_end_utime > run_.steady_begin_utime ? run_.steady_end_utime : run_.truth.back().utime;
   return static_cast<double>(end - run_.start_utime) * kMicrosecond;
+}
+
+double RigMotion::crest_near_s(double time_s) const {
+  const double half_s = 0.5 * run_.period_s;
+  double crest_s = time_s, highest_m = -std::numeric_limits<double>::infinity();
+  for (const evaluation::TruthSample& s : run_.truth) {
+    const double at_s = since_start_s(run_, s.utime);
+    if (std::abs(at_s - time_s) > half_s || s.heave_m <= highest_m) continue;
+    highest_m = s.heave_m;
+    crest_s = at_s;
+  }
+  return crest_s;
 }
 
 RigInstant RigMotion::at(double time_s) const {

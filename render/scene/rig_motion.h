@@ -32,6 +32,7 @@ class RigMotion {
   bool on_sea() const { return on_sea_; }  // a buoy on a sea instead of the arm's gondola
   double begin_s() const;                  // of the steady part, or of the record where nothing is steady
   double end_s() const;
+  double crest_near_s(double time_s) const;  // highest within half a period
 
  private:
   void find_azimuth();

@@ -213,13 +213,14 @@ void RigScene::draw_labels(const RigMotion& motion, const RigInstant& at, const 
       painter.stroke(std::array{on_page(a), on_page(b)}, color, width);
     };
     const float thin = std::max(1.0F, 0.09F * text_px);
-    line({x, 0, low}, {x, 0, high}, colors.faint_ink, thin);
+    // In full ink: some of it stands on the water.
+    line({x, 0, low}, {x, 0, high}, colors.ink, thin);
     const double step = nice_step(high - low, 4);
     for (double z = std::ceil(low / step - 1e-9) * step; z <= high + 1e-9; z += step) {
-      line({x, 0, z}, {x + 0.05 * (r + 0.3), 0, z}, colors.faint_ink, thin);
+      line({x, 0, z}, {x + 0.05 * (r + 0.3), 0, z}, colors.ink, thin);
       const Vec2 p = on_page({x + gap, 0, z});
       painter.text(p, number_text(100 * z, 0) + (z + step > high + 1e-9 ? " cm" : ""),
-                   {.size_px = text_px, .color = colors.faint_ink, .v = VAlign::kMiddle});
+                   {.size_px = text_px, .color = colors.ink, .v = VAlign::kMiddle});
     }
     const auto pointer = [&](double z, Color color, float grown) {
       const Vec2 tip = on_page({x, 0, z});

@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 
 #include "rig/bench/bench.h"
+#include "rig/bench/report/control_chart.h"
 #include "rig/bench/report/live_view.h"
 #include "tests/bench/short_sequence.h"
 #include "tests/campaign/temporary_directory.h"
@@ -57,6 +58,8 @@ TEST(BenchReport, HoldsFiguresResultsInstrumentsAndFiles) {
                            "Every step succeeded at its first attempt"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
 
+  const std::vector<std::string> settings = procedure_figure(run.sequence, store).panels.at(1).y.categories;
+  EXPECT_NE(std::ranges::find(settings, "\u2212100 µA"), settings.end()) << "as people write it";
   EXPECT_EQ(closure_figure(analysis).panels.size(), 2U);
   Analysis gyros = analysis;
   std::erase_if(gyros.channels, [](const ChannelAnalysis& channel) { return !channel.channel.starts_with("gyro"); });
@@ -67,6 +70,32 @@ TEST(BenchReport, HoldsFiguresResultsInstrumentsAndFiles) {
   EXPECT_TRUE(csv[1].starts_with("gyro_2,3e-08,"));
   EXPECT_EQ(std::ranges::count(csv[0], ','), std::ranges::count(csv[1], ','));
   EXPECT_EQ(lines_of(steps_csv(store)).size(), store.steps().size() + 1);
+}
+
+// Of the calibrations in a chart's panel, and the names of its limits.
+std::pair<std::vector<std::string>, std::vector<std::string>> columns_and_limits(const render::Panel& panel) {
+  std::vector<std::string> limits;
+  for (const render::Mark& mark : panel.marks)
+    if (const auto* span = std::get_if<render::Span>(&mark); span != nullptr && !span->name.empty()) limits.push_back(span->name);
+  return {panel.x.categories, limits};
+}
+
+TEST(ControlChart, TakesARepeatedMeasurementOnceAndShowsLimitsOfADifferenceAlone) {
+  const FinishedRun run;
+  estimator::FrontEndCalibration first = analyse(run.sequence, run.store()).calibration, merged = first, later = first;
+  merged.procedure += "+bias";
+  later.measured = "2031" + later.measured.substr(4);
+  for (estimator::FrontEndChannel& channel : later.channels) channel.dsf_N.coefficients[0] += 5e-6;
+  const std::string column = first.measured.substr(0, 10) + "\n" + first.procedure;
+
+  const render::Figure alone = control_chart({first, merged}, false), both = control_chart({first, merged, later}, false);
+  EXPECT_NE(alone.title.find("scale factor N"), std::string::npos) << alone.title;
+  const auto [columns, limits] = columns_and_limits(alone.panels.at(0));
+  EXPECT_EQ(columns, std::vector<std::string>{column});
+  EXPECT_TRUE(limits.empty());
+  const auto [two_columns, two_limits] = columns_and_limits(both.panels.at(0));
+  EXPECT_EQ(two_columns, (std::vector<std::string>{column, "2031" + column.substr(4)}));
+  EXPECT_EQ(two_limits, (std::vector<std::string>{"k = 2", "k = 3"}));
 }
 
 TEST(BenchReport, JUnitTellsEveryLimitThatWasKeptAndEachThatWasNot) {

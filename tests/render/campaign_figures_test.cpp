@@ -173,6 +173,21 @@ TEST(PaperFigures, NameTheBiasOfAnUncalibratedAccelerometer) {
   EXPECT_NE(subtitle.find("b = 0.200 m/s\u00B2"), std::string::npos) << subtitle;
   EXPECT_NE(subtitle.find("= 292 cm"), std::string::npos) << subtitle;
   EXPECT_EQ(corrected_trace_figure(run, traces, true).subtitle.find("b ="), std::string::npos);
+  for (estimator::HeaveSample& sample : traces.heave) {
+    const double t = static_cast<double>(sample.utime - run.start_utime) * 1e-6;
+    sample.heave_m -= kBias * t * t;
+  }
+  const std::string below = corrected_trace_figure(run, traces, false).subtitle;
+  EXPECT_NE(below.find("b = \u22120.200 m/s\u00B2"), std::string::npos) << below;
+}
+
+TEST(PaperFigures, SayWhereTheyDoNotShowTheWholeRecord) {
+  const evaluation::RunRecord whole = test::example_run(2, 1.0, 100), longer = test::example_run(2, 1.0, 200);
+  const auto subtitle_of = [](const evaluation::RunRecord& run) {
+    return corrected_trace_figure(run, recorded_traces(run, "harmonic"), true).subtitle;
+  };
+  EXPECT_EQ(subtitle_of(whole).find("shown"), std::string::npos) << subtitle_of(whole);
+  EXPECT_NE(subtitle_of(longer).find("shown: the first 144 of 228 s"), std::string::npos) << subtitle_of(longer);
 }
 
 TEST(CampaignFigures, ShowTheLongestAndHighestRun) {

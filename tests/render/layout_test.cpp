@@ -76,6 +76,33 @@ TEST(Layout, ManyCategoriesAreThinnedOutAndFewAreShortened) {
     EXPECT_NE(label.find("\u2026"), std::string::npos);
 }
 
+TEST(Layout, GroupsAreNamedInTheirMiddleAndPartedByRules) {
+  Figure figure{.width_mm = 100, .height_mm = 60};
+  figure.panels.push_back({.x = {.groups = {{"2", 1}, {"4", 4}, {"6", 2}}}, .marks = {cosine()}});
+  FontBook fonts;
+  const PanelPlan p = plan_of(figure, fonts).panels[0];
+  EXPECT_EQ(p.x.low, -0.5);
+  EXPECT_EQ(p.x.high, 6.5);
+  ASSERT_EQ(p.x_ticks.major.size(), 3U);
+  const std::vector<std::pair<double, std::string>> expected = {{0, "2"}, {2.5, "4"}, {5.5, "6"}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(p.x_ticks.major[i].value, expected[i].first);
+    EXPECT_EQ(p.x_ticks.major[i].label, expected[i].second);
+  }
+  EXPECT_EQ(p.x_ticks.parting, (std::vector<double>{0.5, 4.5}));
+}
+
+TEST(Layout, BarsStandOnTheAxisAndCrestsAtZeroDoNotTouchIt) {
+  const auto high_of = [](const Mark& mark) {
+    Figure figure;
+    figure.panels.push_back({.marks = {mark}});
+    FontBook fonts;
+    return plan_of(figure, fonts).panels[0].y.high;
+  };
+  EXPECT_EQ(high_of(Bars{.at = {0, 1}, .value = {-1, -2}}), 0);
+  EXPECT_GT(high_of(Line{.x = {0, 1, 2}, .y = {-1, 0, -1}}), 0);
+}
+
 TEST(Layout, RowsTakeTheirShareOfTheHeight) {
   Figure figure{.columns = 1, .row_heights = {3, 1}};
   figure.panels = {{.marks = {cosine()}}, {.marks = {cosine()}}};

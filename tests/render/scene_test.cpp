@@ -29,6 +29,14 @@ TEST(RigMotion, FollowsTheTruthBetweenItsSamples) {
   }
 }
 
+TEST(RigMotion, FindsTheCrestNearATime) {
+  const evaluation::RunRecord run = test::example_run();
+  const RigMotion motion(run, "");
+  const double crest_s = motion.crest_near_s(70);
+  EXPECT_LE(std::abs(crest_s - 70), 0.5 * run.period_s);
+  EXPECT_NEAR(motion.at(crest_s).sensor_m.z(), 0.5, 1e-3);
+}
+
 TEST(RigMotion, TurnsTheNavigationFrameIntoTheScene) {
   evaluation::RunRecord run = test::example_run();
   for (evaluation::TruthSample& s : run.truth) std::swap(s.north_m, s.east_m);  // the arm points east

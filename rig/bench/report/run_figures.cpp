@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 
 #include "motion/kinematics/frames.h"
@@ -36,7 +37,7 @@ CurrentUnit unit_for(double largest_A) {
 
 Panel window_panel(const LiveWindow& window, const Traces& traces) {
   Panel panel{.title = window.title,
-              .x = {.label = "Time, UTC", .scale = render::Scale::kTime, .padding = 0},
+              .x = {.label = "Time", .scale = render::Scale::kTime, .padding = 0},
               .legend = render::Legend::kAbove};
   double largest_A = 0;
   for (const std::string& channel : window.channels) {
@@ -76,9 +77,12 @@ std::string variable(const std::string& path, std::string_view name) {   // "tem
   return path.substr(from, path.find('/', from) - from);
 }
 
-std::string as_read(std::string text) {   // sequence files say degC
-  const std::size_t at = text.find("degC");
-  return at == std::string::npos ? text : text.replace(at, 4, "°C");
+// Sequence files are written in ASCII.
+std::string as_read(std::string text) {
+  if (text.starts_with('-')) text.replace(0, 1, "\u2212");
+  for (const auto& [ascii, read] : {std::pair{"degC", "°C"}, {" uA", " µA"}, {" uV", " µV"}})
+    if (const std::size_t at = text.find(ascii); at != std::string::npos) text.replace(at, std::strlen(ascii), read);
+  return text;
 }
 
 // A row a category, a bar from the beginning to the end of everything that belongs to it.
@@ -149,7 +153,7 @@ std::optional<Panel> one_channel(const Sequence& sequence, const std::map<int, S
     }
     if (own != block) break;
     const bool records = sequence.plan[static_cast<std::size_t>(index)].verb == Verb::kRecord;
-    gantt.add(setting, records ? "recording" : "setting and settling", 60 * hours(row.started_utime, start),
+    gantt.add(as_read(setting), records ? "recording" : "setting and settling", 60 * hours(row.started_utime, start),
               60 * hours(row.ended_utime, start));
   }
   if (block.empty()) return std::nullopt;
