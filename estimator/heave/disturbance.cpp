@@ -49,6 +49,13 @@ double turned_offset_m2ps3(const AttitudeSample& attitude, const Motion& motion,
   return kOffsetCorrelation_s * square(turned_mps2(motion, sensor)) * (down_B - motion.down_B).squaredNorm();
 }
 
+Eigen::Array2d gyro_scale_leaks_mps2(const AttitudeSample& attitude, const Motion& motion,
+                                     const Vector3d& f_B) {
+  const Vector3d down_B = attitude.q_NB.conjugate() * Vector3d::UnitZ();
+  const Vector3d torn_B = f_B.cross(down_B);  // down . (e_i x f) is its i-th component
+  return {-(down_B.y() - motion.down_B.y()) * torn_B.x(), (down_B.x() - motion.down_B.x()) * torn_B.y()};
+}
+
 void Motion::follow(const AttitudeSample& attitude, double share) {
   const Vector3d now_B = attitude.q_NB.conjugate() * Vector3d::UnitZ();
   down_B += share * (now_B - down_B);

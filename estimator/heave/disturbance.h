@@ -29,6 +29,12 @@ double disturbance_m2ps3(const AttitudeSample& attitude, std::int32_t flags, dou
 double turned_offset_m2ps3(const AttitudeSample& attitude, const Motion& motion,
                            const SensorKnowledge& sensor);
 
+// What the vertical acceleration, up, errs by per unit of a relative scale error of the gyroscope about body
+// x and y: the attitude errs in proportion to the angle phi by which the body leans from its mean, since what
+// is slow is levelled, and  a = -down . (phi_i e_i x f).
+Eigen::Array2d gyro_scale_leaks_mps2(const AttitudeSample& attitude, const Motion& motion,
+                                     const Vector3d& f_B);
+
 struct MeanDisturbance {
   double sum_m2ps3 = 0;
   int count = 0;

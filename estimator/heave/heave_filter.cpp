@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "estimator/heave/node_spectrum.h"
 
@@ -10,6 +11,7 @@ namespace waverig::estimator {
 namespace {
 
 constexpr double kPathVariance_m2 = 100, kSpeedVariance_m2ps2 = 25;  // nothing known
+constexpr double kScaleWalk_ps = 1e-8;                               // a thousandth in a hundred seconds
 constexpr double kMeasurementVariance_m2 = 1e-10;  // the path is exact; this keeps the algebra regular
 // Innovation squared over its variance from which on it surprises, and what it is then taken to be: a sea of
 // one spectrum seldom makes a large one; in a restless one, moved by hand, they tell little of the drift.
@@ -31,22 +33,28 @@ constexpr double kRestLevel = 0.05;        // of the sea's variance: how far fro
 constexpr Surprise kStirs{40, 3};          // of a rest that is none
 constexpr int kOnset = 16;  // nodes of a sea that begins again: it need not be another one for being rough
 
-Eigen::Matrix3d drift_transition(double dt) {
-  Eigen::Matrix3d F;
-  F << 1, dt, dt * dt / 2, 0, 1, dt, 0, 0, 1;
-  return F;
-}
-
 }  // namespace
 
-HeaveFilter::HeaveFilter(const SeaModel& model, double offset_sigma_mps2) {
-  begin(model, Eigen::Vector3d(kPathVariance_m2, kSpeedVariance_m2ps2, offset_sigma_mps2 * offset_sigma_mps2)
-                   .asDiagonal());
+HeaveFilter::HeaveFilter(const SeaModel& model, double offset_sigma_mps2, double gyro_scale_sigma) {
+  const double scale_variance = gyro_scale_sigma * gyro_scale_sigma;
+  const DriftVector variances{kPathVariance_m2, kSpeedVariance_m2ps2, offset_sigma_mps2 * offset_sigma_mps2,
+                              scale_variance, scale_variance};
+  begin(model, variances.asDiagonal());
+}
+
+HeaveFilter::DriftMatrix HeaveFilter::transition(const LevelIncrement& increment, double dt_s) {
+  DriftMatrix F = DriftMatrix::Identity();
+  F(0, 1) = dt_s;
+  F(0, 2) = dt_s * dt_s / 2;
+  F(1, 2) = dt_s;
+  F.block<1, 2>(0, 3) = increment.path_m.tail<2>().matrix().transpose();
+  F.block<1, 2>(1, 3) = increment.speed_mps.tail<2>().matrix().transpose();
+  return F;
 }
 
 void HeaveFilter::set_model(const SeaModel& model) {
   if (model.interval_s != model_.interval_s || model.order() != model_.order()) {
-    begin(model, P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>());
+    begin(model, drift());
   } else {
     model_ = model;
   }
@@ -61,52 +69,52 @@ void HeaveFilter::begin_sea(const SeaModel& model) {
 }
 
 // No heave is known at these nodes yet: its prior is the sea's own.
-void HeaveFilter::begin(const SeaModel& model, const Eigen::Matrix3d& drift) {
+void HeaveFilter::begin(const SeaModel& model, const DriftMatrix& drift) {
   model_ = model;
   const int n = model.order();
   z_.setZero(n);
-  P_.setZero(n + 3, n + 3);
+  P_.setZero(n + kDrift, n + kDrift);
   for (int j = 0; j < n; ++j) P_.col(j).segment(j, n - j) = model.autocovariance_m2.head(n - j);
-  P_.bottomRightCorner<3, 3>() = drift;
+  P_.bottomRightCorner<kDrift, kDrift>() = drift;
 }
 
 // Of its waves nothing is known yet but that they begin near the level of the rest; speed and bias are known.
 void HeaveFilter::begin_from_rest() {
-  Eigen::Matrix3d drift = P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>();
-  drift.row(0).setZero();
-  drift.col(0).setZero();
-  drift(0, 0) = kRestLevel * model_.heave_variance_m2();
-  begin(model_, drift);
+  DriftMatrix known = drift();
+  known.row(0).setZero();
+  known.col(0).setZero();
+  known(0, 0) = kRestLevel * model_.heave_variance_m2();
+  begin(model_, known);
 }
 
 void HeaveFilter::step(const HeaveStep& step) {
   const double dt = model_.interval_s;
-  path_m_ += dt * (speed_mps_ - dt * bias_mps2_ / 2) + step.increment.path_m;
-  speed_mps_ += step.increment.speed_mps - dt * bias_mps2_;
+  const PathIncrement sea = without_drift(step.increment, dt);
+  path_m_ += dt * speed_mps_ + sea.path_m;
+  speed_mps_ += sea.speed_mps;
   const double told_m = path_m_;
   const bool rested = rests_;
-  look_for_rest(step);
+  look_for_rest(sea, step.turn_mps2);
   if (rested && !rests_) begin_from_rest();
-  predict(std::max(model_.accel_noise_m2ps3, step.disturbance_m2ps3));
+  predict(step.increment, std::max(model_.accel_noise_m2ps3, step.disturbance_m2ps3));
   update();
   correction_m_ = rested || rests_ ? path_m_ - told_m : 0.0;
 }
 
 // Half a wave is the least: any sea has moments without acceleration.
-void HeaveFilter::look_for_rest(const HeaveStep& step) {
+void HeaveFilter::look_for_rest(const PathIncrement& sea, double turn_mps2) {
   const double dt = model_.interval_s;
-  const double a_mps2 = second_difference_m(last_, step.increment, dt) / (dt * dt) - bias_mps2_;
-  last_ = step.increment;
-  const bool quiet = std::hypot(a_mps2, step.turn_mps2) < kQuiet * model_.acceleration_mps2();
+  const double a_mps2 = second_difference_m(std::exchange(last_, sea), sea, dt) / (dt * dt);
+  const bool quiet = std::hypot(a_mps2, turn_mps2) < kQuiet * model_.acceleration_mps2();
   quiet_ = quiet ? quiet_ + 1 : 0;
   rests_ = quiet_ * dt > std::max(kShortestRest_s, std::numbers::pi / model_.mean_frequency_radps);
 }
 
 void HeaveFilter::skip(int intervals) {
   const int n = model_.order();
-  for (int i = 0; i < intervals; ++i) predict(model_.accel_noise_m2ps3);
+  for (int i = 0; i < intervals; ++i) predict({}, model_.accel_noise_m2ps3);
   P_.middleRows(n, 2).setZero();
-  P_.row(n + 2).segment(n, 2).setZero();
+  P_.block(n + 2, n, kDrift - 2, 2).setZero();
   P_(n, n) = kPathVariance_m2;
   P_(n + 1, n + 1) = kSpeedVariance_m2ps2;
   path_m_ = z_[0];
@@ -116,7 +124,7 @@ void HeaveFilter::skip(int intervals) {
   rests_ = false;
 }
 
-void HeaveFilter::predict(double noise_m2ps3) {
+void HeaveFilter::predict(const LevelIncrement& increment, double noise_m2ps3) {
   const int n = model_.order();
   const Eigen::VectorXd at_rest = rests_ ? Eigen::VectorXd::Unit(n, 0) : Eigen::VectorXd();
   const Eigen::VectorXd& a = rests_ ? at_rest : model_.ar;
@@ -125,25 +133,25 @@ void HeaveFilter::predict(double noise_m2ps3) {
   z_[0] = z;
 
   const double dt = model_.interval_s;
-  const Eigen::Matrix3d F = drift_transition(dt);
+  const DriftMatrix F = transition(increment, dt);
   const auto heave = P_.topLeftCorner(n, n);
   const Eigen::VectorXd Pa = heave.selfadjointView<Eigen::Lower>() * a;
-  const Eigen::Vector3d with_drift = F * (P_.block(n, 0, 3, n) * a);
+  const DriftVector with_drift = F * (P_.block(n, 0, kDrift, n) * a);
   for (int j = n - 1; j > 0; --j) {  // each heave is one node older
     P_.col(j).segment(j, n - j) = P_.col(j - 1).segment(j - 1, n - j);
-    P_.col(j).tail<3>() = F * P_.col(j - 1).tail<3>();
+    P_.col(j).tail<kDrift>() = F * P_.col(j - 1).tail<kDrift>();
   }
   P_(0, 0) = a.dot(Pa) + (rests_ ? kRestVariance_m2 : surprise_ * model_.innovation_m2);
   P_.col(0).segment(1, n - 1) = Pa.head(n - 1);
-  P_.col(0).tail<3>() = with_drift;
-  Eigen::Matrix3d D = P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>();
-  D = F * D * F.transpose();
+  P_.col(0).tail<kDrift>() = with_drift;
+  DriftMatrix D = F * drift() * F.transpose();
   // White acceleration noise over one interval, integrated once and twice.
   D(0, 0) += noise_m2ps3 * dt * dt * dt / 3;
   D(1, 0) += noise_m2ps3 * dt * dt / 2;
   D(1, 1) += noise_m2ps3 * dt;
   D(2, 2) += model_.bias_walk_m2ps5 * dt;
-  P_.bottomRightCorner<3, 3>().triangularView<Eigen::Lower>() = D;
+  D.diagonal().tail<2>().array() += kScaleWalk_ps * dt;
+  P_.bottomRightCorner<kDrift, kDrift>().triangularView<Eigen::Lower>() = D;
 }
 
 void HeaveFilter::update() {
@@ -151,7 +159,7 @@ void HeaveFilter::update() {
   const double innovation = path_m_ - z_[0];
   Eigen::VectorXd PH = P_.col(0);
   PH.head(n) += P_.row(n).head(n).transpose();
-  PH.tail<3>() += P_.col(n).tail<3>();
+  PH.tail<kDrift>() += P_.col(n).tail<kDrift>();
   double S = PH[0] + PH[n] + kMeasurementVariance_m2;
   const double ratio = innovation * innovation / S;
   const auto take_for_sea = [&](double times) {
@@ -187,12 +195,13 @@ void HeaveFilter::update() {
   path_m_ -= innovation * gain[n];
   speed_mps_ -= innovation * gain[n + 1];
   bias_mps2_ += innovation * gain[n + 2];
+  gyro_scale_ += innovation * gain.tail<2>().array();
   P_.selfadjointView<Eigen::Lower>().rankUpdate(PH, -1 / S);
 }
 
-double HeaveFilter::variance_m2(double since_s) const {
-  const Eigen::Vector3d h(1, since_s, since_s * since_s / 2);
-  return std::max(h.dot(P_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>() * h), 0.0);
+double HeaveFilter::variance_m2(const LevelIncrement& partial, double since_s) const {
+  const DriftVector h = transition(partial, since_s).row(0);
+  return std::max(h.dot(drift() * h), 0.0);
 }
 
 }  // namespace waverig::estimator

@@ -1,10 +1,12 @@
 // HeaveFilter: Kalman filter of heave at the nodes, under a SeaModel. Causal; a step a node.
 //
-// State: the last `order` heaves z(k) … z(k-order+1), and drift (d, d', b). Measurement: the path, the
-// acceleration's double integral, which is z(k) + d(k) exactly. Each step's drift is taken out of the path at
-// once, so that path and speed are the estimate; the older heaves in the state are fixed-lag smoothed by
-// every later measurement. What surprises is taken for sea, not for drift: in a steady sea only what no such
-// sea does, in a restless one (that rises, or is made by hand) whatever is larger than usual.
+// State: the last `order` heaves z(k) … z(k-order+1), and drift (d, d', b, s_x, s_y): d'' = b + s . l, with l
+// what a relative scale error s of the gyroscope leaks into the vertical (disturbance.h); in a steep sea that
+// wanders with the groups of waves as no sea does. Measurement: the path, the acceleration's double integral,
+// which is z(k) + d(k) exactly. Each step's drift is taken out of the path at once, so that path and speed
+// are the estimate; the older heaves in the state are fixed-lag smoothed by every later measurement. What
+// surprises is taken for sea, not for drift: in a steady sea only what no such sea does, in a restless one
+// (that rises, or is made by hand) whatever is larger than usual.
 //
 // A rest in the middle of a sea (a rig between two runs, a board that is put down) is told by half a wave in
 // which nothing about the body moves as the sea would move it: z then stands, and the path tells speed and
@@ -18,8 +20,11 @@
 
 namespace waverig::estimator {
 
+// Of the levelled vertical acceleration, up, and of the two leaks into it.
+using LevelIncrement = Increment<Eigen::Array3d>;
+
 struct HeaveStep {  // one node interval
-  PathIncrement increment;
+  LevelIncrement increment;
   // Two-sided density of the acceleration's noise where that is known to be more than the model's, which is
   // an average (attitude not settled, saturated samples; disturbance.h).
   double disturbance_m2ps3 = 0;
@@ -28,8 +33,9 @@ struct HeaveStep {  // one node interval
 
 class HeaveFilter {
  public:
-  // offset_sigma_mps2: standard uncertainty of the mean vertical acceleration, the sensor's offset.
-  HeaveFilter(const SeaModel& model, double offset_sigma_mps2);
+  // offset_sigma_mps2: standard uncertainty of the mean vertical acceleration, the sensor's offset;
+  // gyro_scale_sigma: relative.
+  HeaveFilter(const SeaModel& model, double offset_sigma_mps2, double gyro_scale_sigma);
   // Keeps the drift; where the nodes lie otherwise from now on, the older heaves are forgotten.
   void set_model(const SeaModel& model);
   void begin_sea(const SeaModel& model);  // the same, of a sea that just came up out of a calm
@@ -39,13 +45,22 @@ class HeaveFilter {
   void skip(int intervals);
 
   // At the last node plus `since_s`, given the increment from the node on.
-  double heave_m(const PathIncrement& partial, double since_s) const {
-    return path_m_ + since_s * (speed_mps_ - since_s * bias_mps2_ / 2) + partial.path_m;
+  double heave_m(const LevelIncrement& partial, double since_s) const {
+    return path_m_ + since_s * speed_mps_ + without_drift(partial, since_s).path_m;
   }
-  double heave_rate_mps(const PathIncrement& partial, double since_s) const {
-    return speed_mps_ + partial.speed_mps - since_s * bias_mps2_;
+  double heave_rate_mps(const LevelIncrement& partial, double since_s) const {
+    return speed_mps_ + without_drift(partial, since_s).speed_mps;
   }
-  double variance_m2(double since_s) const;
+  double variance_m2(const LevelIncrement& partial, double since_s) const;
+  // Of the up axis over length_s, less bias and leaks.
+  PathIncrement without_drift(const LevelIncrement& increment, double length_s) const {
+    const PathIncrement sea = without_leaks(increment);
+    return {sea.speed_mps - length_s * bias_mps2_, sea.path_m - length_s * length_s * bias_mps2_ / 2};
+  }
+  PathIncrement without_leaks(const LevelIncrement& increment) const {
+    return {increment.speed_mps[0] - (gyro_scale_ * increment.speed_mps.tail<2>()).sum(),
+            increment.path_m[0] - (gyro_scale_ * increment.path_m.tail<2>()).sum()};
+  }
 
   // Heave at the node `lag` intervals ago, by all measurements since. lag < order.
   double lagged_heave_m(int lag) const { return z_[lag]; }
@@ -57,18 +72,24 @@ class HeaveFilter {
   double correction_m() const { return correction_m_; }  // of heave by the last step, if by a rest
   const SeaModel& model() const { return model_; }
   int order() const { return model_.order(); }
-  double bias_mps2() const { return bias_mps2_; }
+  const Eigen::Array2d& gyro_scale() const { return gyro_scale_; }  // relative error about body x and y
 
  private:
-  void begin(const SeaModel& model, const Eigen::Matrix3d& drift);
+  static constexpr int kDrift = 5;
+  using DriftVector = Eigen::Vector<double, kDrift>;
+  using DriftMatrix = Eigen::Matrix<double, kDrift, kDrift>;
+  static DriftMatrix transition(const LevelIncrement& increment, double dt_s);
+  DriftMatrix drift() const { return P_.bottomRightCorner<kDrift, kDrift>().selfadjointView<Eigen::Lower>(); }
+  void begin(const SeaModel& model, const DriftMatrix& drift);
   void begin_from_rest();
-  void look_for_rest(const HeaveStep& step);
-  void predict(double noise_m2ps3);
+  void look_for_rest(const PathIncrement& sea, double turn_mps2);
+  void predict(const LevelIncrement& increment, double noise_m2ps3);
   void update();
 
   SeaModel model_;
   Eigen::VectorXd z_;  // heaves, newest first
   double path_m_ = 0, speed_mps_ = 0, bias_mps2_ = 0;
+  Eigen::Array2d gyro_scale_ = Eigen::Array2d::Zero();
   Eigen::MatrixXd P_;  // the lower triangle
   static constexpr double kTooRough = 5;
   static constexpr double kNoVariance = std::numeric_limits<double>::infinity();

@@ -28,9 +28,11 @@ constexpr std::ptrdiff_t kRise = 80;               // nodes after it that are go
 constexpr std::int64_t kMayJump = 120;             // nodes; later, what is told has been taken for waves
 constexpr double kSeaIsGone_s = 12;                // after a rest of that length
 constexpr double kJumpFades_s = 4;
-constexpr double kChosenAgain = 1.5;            // times the nodes, while the sea is guessed
-constexpr double kGuessWeight = 3;              // periodograms of less than a minute tell little
-constexpr double kOffsetDoubt = 2;              // a sensor that is off is not to be taken for a swell
+constexpr double kChosenAgain = 1.5;  // times the nodes, while the sea is guessed
+constexpr double kGuessWeight = 3;    // periodograms of less than a minute tell little
+constexpr double kOffsetDoubt = 2;    // a sensor that is off is not to be taken for a swell
+// A steep sea shows the gyroscope's scale soon enough from there; by hand a body is moved as no sea moves it.
+constexpr double kScaleDoubt = 0.5;
 constexpr std::size_t kMostRethought = 60'000;  // samples
 constexpr double kAtOnce = 1.1;
 
@@ -49,7 +51,7 @@ Realtime::Realtime(const MethodSettings& settings)
       attitude_(attitude_settings(settings.sensor)),
       integrator_(kFineInterval_s),
       identifier_(identifier_settings(settings.sensor)),
-      filter_(identifier_.model(), 0),
+      filter_(identifier_.model(), 0, 0),
       counter_(settings.sensor) {
   const double longest = (filter_.order() - 2) * kFineInterval_s;
   if (!(settings.fixed_lag_s >= 0 && settings.fixed_lag_s <= longest))
@@ -114,7 +116,7 @@ double Realtime::MeanForce::change_mps2() {
 }
 
 void Realtime::start_path(const ImuSample& sample, const AttitudeSample& attitude) {
-  integrator_.start(sample.utime, -attitude.a_N.z());
+  integrator_.start(sample.utime, {-attitude.a_N.z(), 0, 0});
   whole_.clear();
   disturbance_ = {};
   force_ = {};
@@ -143,12 +145,14 @@ void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude,
   disturbance_.add(disturbance_m2ps3(attitude, sample.flags, settings_.sensor.gravity_mps2) +
                    turned_offset_m2ps3(attitude, motion_, settings_.sensor));
   force_.add(sample.f_B);
-  integrator_.add(sample.utime, -attitude.a_N.z(), [&](std::int64_t, const PathIncrement& increment) {
+  Eigen::Array3d up;
+  up << -attitude.a_N.z(), gyro_scale_leaks_mps2(attitude, motion_, sample.f_B);
+  integrator_.add(sample.utime, up, [&](std::int64_t, const LevelIncrement& increment) {
     steps.push_back({increment, disturbance_.mean(), force_.change_mps2()});
     disturbance_ = {};
     whole_.push_back(increment);
     if (std::ssize(whole_) > filter_.order()) whole_.pop_front();
-    due_ |= identifier_.add(increment);
+    due_ |= identifier_.add(filter_.without_leaks(increment));
     ++nodes_;
   });
 }
@@ -204,8 +208,9 @@ HeaveFilter Realtime::most_probable(const HeaveFilter* calm, const std::vector<H
   double most = 0, chosen = swell_;
   for (const double swell : choose ? std::span<const double>(kSwells) : std::span<const double>(&swell_, 1)) {
     const SeaModel& sea = identifier_.identify(swell);
-    HeaveFilter filter =
-        calm ? *calm : HeaveFilter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor));
+    HeaveFilter filter = calm ? *calm
+                              : HeaveFilter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor),
+                                            kScaleDoubt * settings_.sensor.gyro_scale_sigma);
     if (calm) filter.begin_sea(sea);
     for (const HeaveStep& step : steps) filter.step(step);
     const double log_likelihood = filter.log_likelihood() - kLargeSwell * std::log(swell);
@@ -258,7 +263,7 @@ void Realtime::rethink_rise() {
 // Who looks at the waves would take a jump for one of them.
 void Realtime::tell_without_jump(HeaveFilter filter) {
   const HeaveFilter before = std::exchange(filter_, std::move(filter));
-  const PathIncrement partial = integrator_.partial();
+  const LevelIncrement& partial = integrator_.partial();
   const double since_s = integrator_.since_node_s();
   jump_m_ += before.heave_m(partial, since_s) - filter_.heave_m(partial, since_s);
 }
@@ -279,14 +284,16 @@ void Realtime::estimate(const Held& held, HeaveSample& out) const {
   if (ago == 0) {
     out.heave_m = filter_.heave_m(held.partial, t);
     out.heave_rate_mps = filter_.heave_rate_mps(held.partial, t);
-    variance = filter_.variance_m2(t);
+    variance = filter_.variance_m2(held.partial, t);
   } else {  // between two nodes that are known by now
-    const PathIncrement& whole = whole_[whole_.size() - static_cast<std::size_t>(ago)];
-    const double dt = kFineInterval_s, b = filter_.bias_mps2();
+    const double dt = kFineInterval_s;
+    const PathIncrement whole =
+        filter_.without_drift(whole_[whole_.size() - static_cast<std::size_t>(ago)], dt);
+    const PathIncrement partial = filter_.without_drift(held.partial, t);
     const double from = filter_.lagged_heave_m(ago), to = filter_.lagged_heave_m(ago - 1);
-    const double speed = (to - from - whole.path_m + b * dt * dt / 2) / dt;
-    out.heave_m = from + t * speed + held.partial.path_m - b * t * t / 2;
-    out.heave_rate_mps = speed + held.partial.speed_mps - b * t;
+    const double speed = (to - from - whole.path_m) / dt;
+    out.heave_m = from + t * speed + partial.path_m;
+    out.heave_rate_mps = speed + partial.speed_mps;
     variance = filter_.lagged_variance_m2(ago - 1);
   }
   out.heave_m += jump_m_;

@@ -32,7 +32,7 @@ class Realtime : public Method {
  private:
   struct Held {  // a sample that waits for the fixed lag
     HeaveSample sample;
-    PathIncrement partial;  // from the node before it
+    LevelIncrement partial;  // from the node before it
     double since_node_s = 0, tilt_sigma_rad = 0;
     std::int64_t node = 0;  // number of that node
   };
@@ -66,7 +66,7 @@ class Realtime : public Method {
   MethodSettings settings_;
   SampleGuard guard_;
   AttitudeFilter attitude_;
-  PathIntegrator integrator_;
+  Integrator<Eigen::Array3d> integrator_;
   SeaIdentifier identifier_;
   HeaveFilter filter_;
   WaveCounter counter_;
@@ -77,7 +77,7 @@ class Realtime : public Method {
   std::optional<Since> calm_;            // a second ago at most, in a calm
   std::optional<Since> rise_;            // the end of a calm, for as long as it is gone through again
   double jump_m_ = 0;                    // of heave when it was, or by a rest: taken back, and fading
-  std::deque<PathIncrement> whole_;      // the newest node intervals, newest last
+  std::deque<LevelIncrement> whole_;     // the newest node intervals, newest last
   std::deque<Held> held_;
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;

@@ -143,6 +143,43 @@ TEST(Realtime, TellsASwellUnderAWindSeaFromDrift) {
 }
 
 // As on the rig: what begins after a rest is told from its first wave on, the swift shaking of a board as well as a swell.
+// A steep sea leans the body so far that a gyroscope two percent off lets tenths of a percent of gravity into the
+// vertical, wandering with the groups of waves.
+TEST(Realtime, LearnsTheGyroscopesScaleInASteepSea) {
+  for (const Limit& sea : {Limit{4, 1.5, 0.013}, {6, 3, 0.016}, {8, 4, 0.02}})
+    for (const double gyro_scale : {-0.02, 0.02})
+      for (const bool long_crested : {false, true}) {
+        const SeaCase c{.tp_s = sea.tp_s, .hm0_m = sea.hm0_m, .duration_s = 300, .long_crested = long_crested,
+                        .gyro_scale = gyro_scale};
+        double squares = 0;
+        constexpr int kSeas = 4;
+        for (std::uint64_t seed = 1; seed <= kSeas; ++seed) {
+          const SeaRecord record = sea_record(c, seed);
+          squares += square(rms_over_hm0(run_realtime(record.samples).heaves, record, 6000, 30000)) / kSeas;
+        }
+        EXPECT_LT(std::sqrt(squares), sea.rms)
+            << sea.tp_s << " s, scale " << gyro_scale << (long_crested ? ", long-crested" : "");
+      }
+}
+
+// The formula against an attitude that errs so.
+TEST(Disturbance, OfAGyroscopesScaleIsWhatTheVerticalErrsBy) {
+  constexpr double kScale = 1e-3;
+  const Vector3d g_N(0, 0, kStandardGravity), a_N(1.5, -2, 0.7);
+  estimator::Motion motion;
+  motion.follow({.q_NB = quaternion_of({0.03, -0.02, 1})}, 1);
+  for (const auto& [axis, roll_rad, pitch_rad] : {std::tuple{0, 0.23, -0.02}, {1, 0.03, 0.15}, {0, -0.2, -0.02}}) {
+    const Quaterniond q_NB = quaternion_of({roll_rad, pitch_rad, 1});
+    const Vector3d f_B = q_NB.conjugate() * (a_N - g_N);
+    const double phi = axis == 0 ? roll_rad - 0.03 : pitch_rad + 0.02;
+    estimator::AttitudeSample attitude;
+    attitude.q_NB = q_NB * Quaterniond(Eigen::AngleAxisd(kScale * phi, Vector3d::Unit(axis)));
+    const double told_mps2 = -(attitude.q_NB * f_B + g_N).z(), true_mps2 = -a_N.z();
+    const Eigen::Array2d leaks_mps2 = estimator::gyro_scale_leaks_mps2(attitude, motion, f_B);
+    EXPECT_NEAR(kScale * leaks_mps2[axis], told_mps2 - true_mps2, 0.05 * std::abs(told_mps2 - true_mps2));
+  }
+}
+
 TEST(Realtime, FollowsMotionThatBeginsAfterARest) {
   struct Motion {
     double tp_s, hm0_m, rms;
@@ -216,17 +253,17 @@ TEST(Realtime, TakesNoMomentOfASeaForARest) {
       const auto density = estimator::pierson_moskowitz_m2s(sea.hm0_m * sea.hm0_m / 16, sea.tp_s, kBins, kDf_hz);
       auto model = estimator::model_of_density(density, kDf_hz, kDt, 96, 1e-6);
       model.set_noise(6e-6);
-      estimator::HeaveFilter filter(model, 0.02);
-      estimator::PathIntegrator integrator(kDt);
+      estimator::HeaveFilter filter(model, 0.02, 0.01);
+      estimator::Integrator<Eigen::Array3d> integrator(kDt);
       const SeaRecord record = sea_record(
           {.tp_s = sea.tp_s, .hm0_m = sea.hm0_m, .duration_s = 1200, .slope_following = 0, .perfect_sensor = true}, seed);
       double longest_s = 0;
       for (const auto& sample : record.samples) {
-        const double up_mps2 = -sample.f_B.z() - kStandardGravity;
+        const Eigen::Array3d up_mps2(-sample.f_B.z() - kStandardGravity, 0, 0);
         if (&sample == &record.samples.front()) {
           integrator.start(sample.utime, up_mps2);
         } else {
-          integrator.add(sample.utime, up_mps2, [&](std::int64_t, const estimator::PathIncrement& increment) {
+          integrator.add(sample.utime, up_mps2, [&](std::int64_t, const estimator::LevelIncrement& increment) {
             filter.step({.increment = increment});
             longest_s = std::max(longest_s, filter.rest_s());
           });

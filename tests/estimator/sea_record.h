@@ -19,7 +19,8 @@ struct SeaCase {
   double slope_following = 1;
   double swell_tp_s = 0, swell_hm0_m = 0;  // another sea under it, from elsewhere
   double tail_end = 5;                     // peak frequencies
-  bool perfect_sensor = false;
+  bool perfect_sensor = false, long_crested = false;
+  double gyro_scale = estimator::kUnknown;   // relative error; drawn where unknown
 };
 
 struct SeaRecord {
@@ -56,6 +57,7 @@ template <class Motion>
 SeaRecord recorded(const SeaCase& c, std::uint64_t seed, Motion motion) {
   const SensorErrors e = c.perfect_sensor ? SensorErrors{.accel_noise_mps2_rthz = 0, .gyro_noise_radps_rthz = 0}
                                           : calibrated_errors(seed);
+  const double gyro_scale = std::isfinite(c.gyro_scale) ? c.gyro_scale : e.gyro_scale;
   RandomStream noise(seed, "noise");
   const double accel_sigma = e.accel_noise_mps2_rthz * std::sqrt(0.5 * c.rate_Hz);
   const double gyro_sigma = e.gyro_noise_radps_rthz * std::sqrt(0.5 * c.rate_Hz);
@@ -73,7 +75,7 @@ SeaRecord recorded(const SeaCase& c, std::uint64_t seed, Motion motion) {
     sample.utime = utime;
     sample.seq = static_cast<std::int64_t>(i);
     sample.f_B = f + e.E * f + e.b_mps2 + white(accel_sigma);
-    sample.w_NB_B = (1 + e.gyro_scale) * m.w_NB_B + e.gyro_bias_radps + white(gyro_sigma);
+    sample.w_NB_B = (1 + gyro_scale) * m.w_NB_B + e.gyro_bias_radps + white(gyro_sigma);
     record.samples.push_back(sample);
     record.heave_m.push_back(waverig::heave_m(m));
     record.heave_rate_mps.push_back(-m.velocity_N.z());
@@ -85,6 +87,7 @@ SeaRecord recorded(const SeaCase& c, std::uint64_t seed, Motion motion) {
 inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
   motion::SeaSettings sea = sea_settings(c.tp_s, c.hm0_m, seed);
   sea.highest_relative = c.tail_end;
+  if (c.long_crested) sea.spreading_s = 0;
   auto components = motion::draw_components(sea);
   if (c.swell_hm0_m > 0) {
     auto swell = sea_settings(c.swell_tp_s, c.swell_hm0_m, seed + 1000);
