@@ -93,6 +93,8 @@ Ticks ticks_of(const Axis& axis, const Mapping& mapping, float length_px, float 
         return log_ticks(mapping.low, mapping.high, most);
       case Scale::kTime:
         return time_ticks(mapping.low, mapping.high, most);
+      case Scale::kSignedLog:
+        return signed_log_ticks(mapping.low, mapping.high, mapping.knee, most);
       case Scale::kLinear:
         break;
     }

@@ -27,7 +27,8 @@ inline constexpr int kNextColor = -1;
 inline constexpr int kInk = -2;       // the theme's text colour
 inline constexpr int kFaintInk = -3;  // the same, fainter: bounds, references
 
-enum class Scale { kLinear, kLog, kTime };  // kTime: seconds since 1970, shown as UTC
+// kTime: seconds since 1970, shown as UTC. kSignedLog: of a heat map's colours alone.
+enum class Scale { kLinear, kLog, kTime, kSignedLog };
 
 // Neighbouring places 0, 1, 2, … of an axis under one name.
 struct AxisGroup {
@@ -112,6 +113,7 @@ struct HeatMap {
   double low = kAuto, high = kAuto;  // of the colour bar; diverging: symmetric
                                      // about 0 by default
   bool log_colors = false;
+  double knee = kAuto;    // of diverging colours: linear about 0 up to here, logarithmic beyond
   bool color_bar = true;  // false where another panel's bar serves
   int decimals = -1;      // of the number written into each cell, fewer where they do not fit; on logarithmic
                           // colours its significant digits, at least two; -1: none

@@ -181,7 +181,12 @@ ColorScale color_scale_of(const HeatMap& heat) {
     const double half = middle == 0 ? 1 : 0.1 * std::abs(middle);
     extent = {middle - half, middle + half};
   }
-  return {{heat.log_colors ? Scale::kLog : Scale::kLinear, extent.low, extent.high, 0, 1}, heat.map};
+  Mapping mapping{heat.log_colors ? Scale::kLog : Scale::kLinear, extent.low, extent.high, 0, 1};
+  if (heat.map == ColorMap::kDiverging && heat.knee > 0) {
+    mapping.scale = Scale::kSignedLog;
+    mapping.knee = heat.knee;
+  }
+  return {mapping, heat.map};
 }
 
 }  // namespace waverig::render

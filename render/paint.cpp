@@ -185,10 +185,8 @@ void draw_color_bar(const PanelPlan& p, const PanelView& v) {
   const std::array<Vec2, 5> frame = {
       {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}};
   v.painter.stroke(frame, v.colors().ink, 0.5F * v.pt);
-  const int most = std::clamp(static_cast<int>(height / (15 * v.text_pt)), 2, 12);
   const Mapping& m = scale.mapping;
-  const Ticks ticks =
-      m.scale == Scale::kLog ? log_ticks(m.low, m.high, most) : linear_ticks(m.low, m.high, most);
+  const Ticks ticks = ticks_of({}, m, height, 15 * v.text_pt, v.fonts, tick_px, false);
   float widest = 0;
   for (const Tick& t : ticks.major) {
     const float y = crisp(bottom - static_cast<float>(m.share(t.value)) * height);

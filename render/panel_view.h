@@ -15,9 +15,13 @@ struct Mapping {
   Scale scale = Scale::kLinear;
   double low = 0, high = 1;
   float from_px = 0, to_px = 1;
+  double knee = 1;  // of kSignedLog
 
   // 0 at low, 1 at high; NaN where a logarithm has no value.
   double share(double value) const {
+    if (scale == Scale::kSignedLog)
+      return (std::asinh(value / knee) - std::asinh(low / knee)) /
+             (std::asinh(high / knee) - std::asinh(low / knee));
     if (scale != Scale::kLog) return (value - low) / (high - low);
     return value > 0 ? std::log(value / low) / std::log(high / low) : kAuto;
   }

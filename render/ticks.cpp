@@ -136,6 +136,28 @@ Ticks log_ticks(double low, double high, int most) {
   return ticks;
 }
 
+Ticks signed_log_ticks(double low, double high, double knee, int most) {
+  const double largest = std::max(std::abs(low), std::abs(high));
+  if (largest <= 2 * knee) return linear_ticks(low, high, most);
+  for (int every = 0;; ++every) {  // 1, 2, 5; decades; every second of them…
+    std::vector<double> sizes;
+    for (double k = std::ceil(std::log10(knee) - kSlack); std::pow(10.0, k) <= largest;
+         k += std::max(1, every)) {
+      for (const double factor : {1.0, 2.0, 5.0})
+        if (every == 0 || factor == 1.0) sizes.push_back(factor * std::pow(10.0, k));
+    }
+    Ticks ticks;
+    const auto add = [&](double value) {
+      if (value >= low && value <= high)
+        ticks.major.push_back({value, number_text(value, value == 0 ? 0 : decimals_of(std::abs(value)))});
+    };
+    for (auto size = sizes.rbegin(); size != sizes.rend(); ++size) add(-*size);
+    add(0);
+    for (const double size : sizes) add(size);
+    if (static_cast<int>(ticks.major.size()) <= std::max(3, most) || sizes.size() < 2) return ticks;
+  }
+}
+
 Ticks time_ticks(double low, double high, int most) {
   constexpr double kMinute = 60, kHour = 3600, kDay = 86400;
   static constexpr std::array<double, 23> kSteps = {

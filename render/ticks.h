@@ -22,8 +22,9 @@ struct Ticks {
 // Major ticks within [low, high], at most `most` (or 3 where that is less), at least one; low < high, both
 // finite.
 Ticks linear_ticks(double low, double high, int most);
-Ticks log_ticks(double low, double high, int most);   // low > 0
-Ticks time_ticks(double low, double high, int most);  // seconds since 1970, UTC
+Ticks log_ticks(double low, double high, int most);                      // low > 0
+Ticks signed_log_ticks(double low, double high, double knee, int most);  // 0, and both signs from the knee on
+Ticks time_ticks(double low, double high, int most);                     // seconds since 1970, UTC
 
 // The largest step of 1, 2 or 5 times a power of ten with which [0, range]
 // holds at most `most` steps.

@@ -14,6 +14,8 @@ using evaluation::CellResult;
 
 namespace {
 
+constexpr double kKnee = 1;  // percent: one outlier leaves the small errors their colours
+
 template <class Value>
 Panel map_panel(const Grid& grid, std::string title, HeatMap map, Value value) {
   for (std::size_t i = 0; i <= grid.periods_s.size(); ++i)
@@ -72,12 +74,14 @@ Figure error_map_figure(const CampaignResults& results) {
     for (const Setting& s : settings)
       if (std::isfinite(value(s))) most = std::max(most, std::abs(value(s)));
     panels.push_back(map_panel(
-        grid, method, {.label = "Error", .unit = "%", .map = ColorMap::kDiverging, .decimals = 2}, value));
+        grid, method,
+        {.label = "Error", .unit = "%", .map = ColorMap::kDiverging, .knee = kKnee, .decimals = 2}, value));
   }
-  return maps_figure("Error of the mean wave height",
-                     "mean less set height, in percent of the set height; one "
-                     "colour scale for all methods",
-                     std::move(panels), -most, most, grid);
+  return maps_figure(
+      "Error of the mean wave height",
+      fmt::format("mean less set height, in percent of the set height; one colour scale for all methods{}",
+                  most > kKnee ? fmt::format(", logarithmic beyond {:g} %", kKnee) : ""),
+      std::move(panels), -most, most, grid);
 }
 
 Figure std_map_figure(const CampaignResults& results) {

@@ -80,5 +80,15 @@ TEST(Palette, FirstFourColoursStayApartForColourBlindReaders) {
   }
 }
 
+TEST(ColorScale, OneOutlierLeavesSmallErrorsTheirColours) {
+  HeatMap map{.values = {-53, 2, 0.1}, .map = ColorMap::kDiverging};
+  EXPECT_NEAR(color_scale_of(map).mapping.share(2), 0.519, 0.001);
+  map.knee = 1;
+  const Mapping scale = color_scale_of(map).mapping;
+  EXPECT_NEAR(scale.share(0), 0.5, 1e-12);
+  EXPECT_NEAR(scale.share(53), 1, 1e-12);
+  EXPECT_GT(scale.share(2), 0.64);
+}
+
 }  // namespace
 }  // namespace waverig::render

@@ -86,6 +86,14 @@ TEST(LogTicks, ThinOutManyDecades) {
   EXPECT_GE(ticks.major.size(), 3U);
 }
 
+TEST(SignedLogTicks, StandOnBothSidesOfZero) {
+  EXPECT_EQ(labels(signed_log_ticks(-30, 30, 1, 12)),
+            (std::vector<std::string>{"\u221220", "\u221210", "\u22125", "\u22122", "\u22121", "0", "1", "2", "5", "10", "20"}));
+  EXPECT_EQ(labels(signed_log_ticks(-30, 30, 1, 5)), (std::vector<std::string>{"\u221210", "\u22121", "0", "1", "10"}));
+  EXPECT_LE(signed_log_ticks(-1e9, 1e9, 1e-9, 5).major.size(), 5U);
+  EXPECT_EQ(labels(signed_log_ticks(-0.5, 0.5, 1, 5)), labels(linear_ticks(-0.5, 0.5, 5)));
+}
+
 TEST(TimeTicks, StandOnRoundTimesOfDay) {
   const double midnight = 1120176000;  // 2005-07-01 00:00 UTC
   const Ticks hours = time_ticks(midnight, midnight + 86400, 6);
