@@ -1,6 +1,7 @@
 // Method: one way from samples to heave and waves, chosen by name. It sees samples and its settings, nothing
 // else: no setting of the rig, no truth, no seed, no clock.
 #pragma once
+#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ struct SensorKnowledge {
   double accel_slope_sigma = 0;  // relative; slope at 1 g against the chord from -1 g to 1 g
   double gyro_bias_sigma_radps = 0.2 * kDegree;
   double gyro_scale_sigma = 0.01;  // relative
+
+  // Relative, of what varies about 1 g.
+  double wave_scale_sigma() const { return std::hypot(accel_scale_sigma, accel_slope_sigma); }
 };
 
 struct MethodSettings {

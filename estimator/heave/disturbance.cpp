@@ -79,7 +79,7 @@ double offset_sigma_mps2(const Motion& motion, const SeaModel& sea, double elaps
 
 double systematic_variance_m2(const SeaModel& sea, const Motion& motion, const SensorKnowledge& s) {
   const double w2 = square(std::max(sea.mean_frequency_radps, kSlowestSea_radps));
-  return sea.heave_variance_m2() * (square(s.accel_scale_sigma) + motion.tilt_variance_rad2) +
+  return sea.heave_variance_m2() * (square(s.wave_scale_sigma()) + motion.tilt_variance_rad2) +
          motion.leaning_variance_rad2 * square(turned_mps2(motion, s) / w2);
 }
 

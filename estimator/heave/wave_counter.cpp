@@ -48,7 +48,7 @@ std::optional<Wave> WaveCounter::cross(double tilt_sigma_rad) {
     wave->period_s = static_cast<double>(crossing_utime_ - start_utime_) * kMicrosecond;
     wave->height_m = crest_m_ - trough_m_;
     wave->noise_sigma_m = std::hypot(crest_sigma_m_, trough_sigma_m_);
-    wave->calibration_sigma_m = sensor_.accel_scale_sigma * wave->height_m;
+    wave->calibration_sigma_m = sensor_.wave_scale_sigma() * wave->height_m;
     wave->tilt_sigma_m =
         tilt_sigma_rad * wave->height_m;  // a_h errs into a_z; the path is about as wide as high
     wave->frequency_sigma_m = 0;          // no wave form is assumed

@@ -18,7 +18,7 @@ Lee2014::Lee2014(const MethodSettings& settings, const Lee2014Settings& own)
   const SensorKnowledge& known = settings.sensor;
   settings_.attitude.gravity_mps2 = known.gravity_mps2;
   offset_sigma_mps2_ = std::hypot(known.accel_bias_sigma_mps2, known.gravity_mps2 * known.accel_scale_sigma);
-  scale_sigma_ = std::hypot(known.accel_scale_sigma, known.accel_slope_sigma);
+  scale_sigma_ = known.wave_scale_sigma();
 }
 
 void Lee2014::add(const ImuSample& sample, Output& output) {
