@@ -33,10 +33,10 @@ HeaveCsvWriter::HeaveCsvWriter(const std::filesystem::path& path) : file_(path) 
 }
 
 void HeaveCsvWriter::write(const estimator::HeaveSample& s) {
-  if (std::isnan(s.heave_sigma_m))
-    file_.write(fmt::format("{},{:.6f},\n", s.utime, s.heave_m));
-  else
-    file_.write(fmt::format("{},{:.6f},{:.6f}\n", s.utime, s.heave_m, s.heave_sigma_m));
+  const auto cell = [](double value) {
+    return std::isnan(value) ? std::string() : fmt::format("{:.6f}", value);
+  };
+  file_.write(fmt::format("{},{},{}\n", s.utime, cell(s.heave_m), cell(s.heave_sigma_m)));
 }
 
 void HeaveCsvWriter::close() { file_.commit(); }

@@ -25,7 +25,7 @@ BlockLevellerSettings leveller_settings(const MethodSettings& settings, const Ha
 // Heave and its rate at t, from waves that surround it; nothing outside of waves.
 struct FittedHeave {
   bool inside = false;
-  double heave_m = 0, rate_mps = 0, sigma_m = kUnknown;
+  double heave_m = kUnknown, rate_mps = kUnknown, sigma_m = kUnknown;
   std::int32_t flags = 0;
 };
 

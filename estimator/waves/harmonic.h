@@ -9,9 +9,9 @@
 // H = 2 A / w^2 of the fitted acceleration amplitude A. First and last partial waves are left out. Waves
 // found while the period changes carry kSettling, waves that hardly stand out of the noise kBelowNoise.
 //
-// heave_m is the fitted wave, its phase running from crossing to crossing; nought with kSettling where there
-// is no wave. Everything comes late: by three quarters of a block and six waves. Memory is bounded by that
-// delay.
+// heave_m is the fitted wave, its phase running from crossing to crossing; unknown (NaN), with kSettling,
+// where there is no wave. Everything comes late: by three quarters of a block and six waves. Memory is
+// bounded by that delay.
 #pragma once
 #include <deque>
 #include <vector>

@@ -118,7 +118,7 @@ void judge_heave(const BenchRecord& record, const Collector& found, BenchFigures
   const std::int64_t settled_utime = record.samples.front().utime + std::llround(kSettled_s / kMicrosecond);
   for (const estimator::HeaveSample& h : found.heaves) {
     const auto point = record.truth.at(h.utime);
-    if (!std::isfinite(point.heave_m)) continue;
+    if (!std::isfinite(point.heave_m) || !std::isfinite(h.heave_m)) continue;
     whole.add(h.heave_m, point.heave_m, point.heave_rate_mps);
     estimate.add(h.heave_m, h.heave_rate_mps);
     truth.add(point.heave_m, point.heave_rate_mps);
