@@ -1,5 +1,6 @@
 #include "estimator/sample_guard.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lcmtypes/flags.h"
@@ -11,11 +12,17 @@ constexpr int kSettledChanges = 20;  // changes seen before a spike can be told 
 constexpr int kStep = 3;             // so many jumps in a row are a step, not a spike
 constexpr double kForgotten = 5;     // intervals after which the last sample says nothing of the next
 constexpr double kForget = 0.02;     // of the usual change, per sample
+constexpr int kNewRate = 10;         // so many gaps in a row are no gaps but a slower rate
+constexpr std::int64_t kLatest_us = std::int64_t{1} << 62;  // so that no difference of times overflows
+
+double median(const std::array<double, 3>& x) {
+  return std::max(std::min(x[0], x[1]), std::min(std::max(x[0], x[1]), x[2]));
+}
 
 }  // namespace
 
 bool SampleGuard::in_range(const ImuSample& s) const {
-  return s.f_B.allFinite() && s.w_NB_B.allFinite() &&
+  return s.utime > -kLatest_us && s.utime < kLatest_us && s.f_B.allFinite() && s.w_NB_B.allFinite() &&
          s.f_B.cwiseAbs().maxCoeff() <= settings_.accel_plausible_mps2 &&
          s.w_NB_B.cwiseAbs().maxCoeff() <= settings_.gyro_plausible_radps;
 }
@@ -44,11 +51,19 @@ bool SampleGuard::spike(const ImuSample& s) {
   return false;
 }
 
-void SampleGuard::learn_interval(double dt_s) {
-  // The mean of the first intervals, then a slow follower that gaps hardly move.
-  ++intervals_;
-  if (interval_s_ > 0 && dt_s > settings_.gap_ratio * interval_s_) return;
-  interval_s_ += (dt_s - interval_s_) / std::min(intervals_, 100);
+// The median of the first three, of which one may be a gap or cut short; then their mean, and in the end a
+// slow follower, gaps left out.
+void SampleGuard::learn_interval(double dt_s, bool gap) {
+  latest_s_ = {latest_s_[1], latest_s_[2], dt_s};
+  gaps_ = gap ? gaps_ + 1 : 0;
+  if (interval_s_ > 0 ? gaps_ < kNewRate : intervals_ + 1 < 3) {
+    ++intervals_;
+    if (interval_s_ > 0 && !gap) interval_s_ += (dt_s - interval_s_) / std::min(intervals_, 100);
+    return;
+  }
+  interval_s_ = median(latest_s_);
+  intervals_ = 3;
+  gaps_ = 0;
 }
 
 GuardVerdict SampleGuard::check(const ImuSample& s) {
@@ -63,7 +78,7 @@ GuardVerdict SampleGuard::check(const ImuSample& s) {
   }
   const double dt_s = started_ ? static_cast<double>(s.utime - last_utime_) * kMicrosecond : 0.0;
   const bool gap = interval_s_ > 0 && dt_s > settings_.gap_ratio * interval_s_;
-  if (dt_s > kForgotten * interval_s_) {
+  if (interval_s_ > 0 && dt_s > kForgotten * interval_s_) {
     jumps_ = 0;
   } else if (started_ && spike(s)) {
     verdict.flags |= flag::kSpike;
@@ -74,7 +89,7 @@ GuardVerdict SampleGuard::check(const ImuSample& s) {
     verdict.flags |= flag::kSaturation;
   }
   if (gap) verdict.flags |= flag::kGap;
-  if (started_) learn_interval(dt_s);
+  if (started_) learn_interval(dt_s, gap);
   verdict.usable = true;
   verdict.dt_s = dt_s;
   started_ = true;

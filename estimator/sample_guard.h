@@ -1,14 +1,17 @@
 // SampleGuard: the one door through which samples enter a method. It lets good samples through in order of
 // time and says of every sample what is wrong with it, in the QARTOD sense (lcmtypes/flags.h).
 //
+// clang-format off
 //   not finite, or beyond what is plausible       kRange         not usable
-//   repeated or out-of-order time                 kRange         not usable (there is a sample of that time
-//   already) samples missing before this one               kGap           usable; dt_s spans the gap one
-//   sample far off the way of its neighbours  kSpike         not usable (three in a row are a step and pass)
+//   repeated or out-of-order time                 kRange         not usable (there is a sample of that time)
+//   samples missing before this one               kGap           usable; dt_s spans the gap
+//   one sample far off the way of its neighbours  kSpike         not usable (three in a row are a step and pass)
 //   the same reading for flat_line_s              kFlatLine      not usable until it changes
 //   an axis at its limit                          kSaturation    usable for its time and rate; f_B is wrong
+// clang-format on
 // Flags that came with the sample stay on it.
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "estimator/types.h"
@@ -36,21 +39,22 @@ class SampleGuard {
  public:
   explicit SampleGuard(const SampleGuardSettings& settings = {}) : settings_(settings) {}
   GuardVerdict check(const ImuSample& sample);
-  double usual_interval_s() const { return interval_s_; }  // 0 until two samples came
+  double usual_interval_s() const { return interval_s_; }  // 0 until four samples came
 
  private:
   bool in_range(const ImuSample& sample) const;
   bool flat(const ImuSample& sample);
   bool spike(const ImuSample& sample);
-  void learn_interval(double dt_s);
+  void learn_interval(double dt_s, bool gap);
 
   SampleGuardSettings settings_;
   bool started_ = false;
   std::int64_t last_utime_ = 0;  // of the last usable sample
   Vector3d last_f_B_ = Vector3d::Zero();
   double interval_s_ = 0;
+  std::array<double, 3> latest_s_{};  // intervals
   double usual_change_mps2_ = 0;
-  int changes_ = 0, jumps_ = 0, intervals_ = 0;
+  int changes_ = 0, jumps_ = 0, intervals_ = 0, gaps_ = 0;
   Vector3d flat_f_B_ = Vector3d::Constant(kUnknown);
   std::int64_t flat_since_ = 0;
 };

@@ -74,6 +74,47 @@ TEST_F(SampleGuardTest, TellsAGapAndItsLength) {
   EXPECT_FALSE(guard_.check(sample(151)).flags & flag::kGap);
 }
 
+TEST_F(SampleGuardTest, LearnsTheIntervalWhateverTheFirstOneIs) {
+  for (const std::int64_t late_us : {-5'500, 10'800'000}) {
+    SampleGuard guard;
+    int gaps = 0;
+    for (std::int64_t i = 0; i < 500; ++i) {
+      ImuSample s = sample(i);
+      if (i > 0) s.utime += late_us;
+      const GuardVerdict verdict = guard.check(s);
+      ASSERT_TRUE(verdict.usable);
+      if (i > 1) gaps += (verdict.flags & flag::kGap) != 0;
+    }
+    EXPECT_EQ(gaps, 0) << late_us;
+    EXPECT_NEAR(guard.usual_interval_s(), 0.01, 1e-4) << late_us;
+  }
+}
+
+TEST_F(SampleGuardTest, TakesToANewRateButNotToLostSamples) {
+  feed(0, 500);
+  std::int64_t i = 500;
+  for (; i < 1500; i += 1 + (i % 3 == 0)) ASSERT_TRUE(guard_.check(sample(i)).usable);  // a third is lost
+  EXPECT_NEAR(guard_.usual_interval_s(), 0.01, 1e-9);
+  int gaps = 0;
+  for (; i < 2500; i += 10) gaps += (guard_.check(sample(i)).flags & flag::kGap) != 0;
+  EXPECT_LE(gaps, 10);
+  EXPECT_NEAR(guard_.usual_interval_s(), 0.1, 1e-9);
+  for (; i < 3500; ++i) ASSERT_FALSE(guard_.check(sample(i)).flags & flag::kGap);
+  EXPECT_NEAR(guard_.usual_interval_s(), 0.01, 1e-3);
+}
+
+TEST_F(SampleGuardTest, RefusesTimesWhoseDifferencesWouldOverflow) {
+  for (const std::int64_t utime :
+       {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    ImuSample s = sample(0);
+    s.utime = utime;
+    const GuardVerdict verdict = guard_.check(s);
+    EXPECT_FALSE(verdict.usable);
+    EXPECT_TRUE(verdict.flags & flag::kRange);
+  }
+  feed(0, 100);
+}
+
 TEST_F(SampleGuardTest, RefusesASpikeButNotAStep) {
   feed(0, 100);
   ImuSample s = sample(100);
