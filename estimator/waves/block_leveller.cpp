@@ -45,11 +45,12 @@ void BlockLeveller::restart() {
 }
 
 void BlockLeveller::add(const ImuSample& s, const GuardVerdict& verdict, std::deque<LevelledSample>& out) {
-  if (!started_) {
+  if (verdict.usable && !started_) {
     started_ = true;
     first_utime_ = s.utime;
   }
-  if (verdict.usable && verdict.dt_s > settings_.longest_gap_s) finish(out);
+  // A block begins with a usable sample: those before it have no time to begin with.
+  if (verdict.usable && (!has_rate_ || verdict.dt_s > settings_.longest_gap_s)) finish(out);
   if (verdict.usable) last_t_s_ = static_cast<double>(s.utime - first_utime_) * kMicrosecond;
   if (nodes_.empty() || nodes_.back().duration_s >= kNode_s) {
     Node node;
@@ -88,8 +89,12 @@ void BlockLeveller::add(const ImuSample& s, const GuardVerdict& verdict, std::de
     return std::find_if(nodes_.begin(), nodes_.end(),
                         [&](const Node& n) { return n.begin_s >= begin_s + part * settings_.block_s; });
   };
-  level(node_at(kGiven)->first, out);
-  const auto keep = node_at(kDropped);
+  const auto given = node_at(kGiven), keep = node_at(kDropped);
+  if (given == nodes_.end() || keep == nodes_.end()) {  // a block hardly longer than a node
+    finish(out);
+    return;
+  }
+  level(given->first, out);
   q_start_ = keep->q_NB;
   raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(keep->first - first_raw_));
   first_raw_ = keep->first;

@@ -34,7 +34,7 @@ struct LevelledSample {
   std::int64_t seq = 0;
   std::int32_t flags = 0;
   bool usable = false;  // f_B may enter a fit
-  double t_s = 0;       // since the record's first sample
+  double t_s = 0;       // since the record's first usable sample
   double up_mps2 = 0;   // levelled vertical acceleration, up positive, gravity taken off
   Vector3d f_B = Vector3d::Zero();
   Quaterniond q_NB = Quaterniond::Identity();

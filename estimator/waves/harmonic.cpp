@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lcmtypes/flags.h"
@@ -14,6 +15,7 @@ using std::numbers::pi;
 constexpr double kWavesAhead = 5.5;  // a wave is given once so many follow: its frequency is shared by them
 constexpr double kWavesBehind = 11;  // kept for the same reason
 constexpr double kQuiet_s = 100;     // without a wave in sight, so much is kept: a slow one may be beginning
+constexpr double kLeastInterval_s = 1e-3;  // of samples, before their usual one is known
 
 BlockLevellerSettings leveller_settings(const MethodSettings& settings, const HarmonicSettings& own) {
   BlockLevellerSettings result = own.leveller;
@@ -57,21 +59,44 @@ Harmonic::Harmonic(const MethodSettings& settings, const HarmonicSettings& own)
     : settings_(settings), own_(own), guard_(own.guard), leveller_(leveller_settings(settings, own)) {}
 
 void Harmonic::add(const ImuSample& sample, Output& output) {
-  if (!started_) {
-    started_ = true;
+  const GuardVerdict verdict = guard_.check(sample);
+  const bool good = verdict.usable && !(verdict.flags & flag::kSaturation);
+  // The time of an unusable sample is not to be trusted: it counts by the usual interval.
+  if (good)
+    silent_s_ = verdict.dt_s;
+  else
+    silent_s_ += verdict.usable ? verdict.dt_s : std::max(guard_.usual_interval_s(), kLeastInterval_s);
+  if (silent_s_ > own_.waves.finder.longest_period_s) finish(output);
+  if (good) silent_s_ = 0;
+  if (!under_way_ && !good) {
+    HeaveSample heave;
+    heave.utime = sample.utime;
+    heave.seq = sample.seq;
+    heave.heave_m = heave.heave_rate_mps = heave.heave_sigma_m = kUnknown;
+    heave.flags = verdict.flags | flag::kSettling;
+    output.heave(heave);
+    return;
+  }
+  if (!under_way_) {
+    under_way_ = true;
     first_utime_ = sample.utime;
   }
   const std::size_t before = levelled_.size();
-  leveller_.add(sample, guard_.check(sample), levelled_);
+  leveller_.add(sample, verdict, levelled_);
   if (levelled_.size() == before) return;
   gather();
   process(false, output);
 }
 
 void Harmonic::finish(Output& output) {
+  if (!under_way_) return;
   leveller_.finish(levelled_);
   gather();
   process(true, output);
+  leveller_ = BlockLeveller(leveller_settings(settings_, own_));
+  series_ = {};
+  given_until_s_ = kNever_s;
+  under_way_ = false;
 }
 
 void Harmonic::gather() {
@@ -88,7 +113,7 @@ void Harmonic::process(bool last, Output& output) {
     waves = regular_waves(series_, *period_s, own_.waves, settings_.sensor);
     until_s = end_s - kWavesAhead * *period_s;
   }
-  if (last) until_s = end_s + 1;
+  if (last) until_s = std::numeric_limits<double>::infinity();
   for (const RegularWave& wave : waves) {
     if (wave.timing.down_crossing_s <= given_until_s_) continue;
     if (wave.end_s() > until_s) {

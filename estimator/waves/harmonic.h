@@ -10,8 +10,9 @@
 // found while the period changes carry kSettling, waves that hardly stand out of the noise kBelowNoise.
 //
 // heave_m is the fitted wave, its phase running from crossing to crossing; unknown (NaN), with kSettling,
-// where there is no wave. Everything comes late: by three quarters of a block and six waves. Memory is
-// bounded by that delay.
+// where there is no wave. Everything comes late: by three quarters of a block and six waves. After a silence
+// of the longest period a new stretch begins, that shares no wave with the one before; so memory is bounded
+// by that delay whatever comes, and a gap costs the same however long.
 #pragma once
 #include <deque>
 #include <vector>
@@ -42,6 +43,8 @@ class Harmonic final : public Method {
   void give_wave(const RegularWave& wave, Output& output);
   void give_heave(const std::vector<RegularWave>& waves, double until_s, Output& output);
 
+  static constexpr double kNever_s = -1;
+
   MethodSettings settings_;
   HarmonicSettings own_;
   SampleGuard guard_;
@@ -49,9 +52,10 @@ class Harmonic final : public Method {
   WaveSeries series_;
   std::deque<LevelledSample> levelled_;  // waiting for their heave
   std::size_t gathered_ = 0;             // of levelled_, already in the series
+  bool under_way_ = false;               // a stretch
   std::int64_t first_utime_ = 0;
-  bool started_ = false;
-  double given_until_s_ = -1;  // end of the last wave given
+  double silent_s_ = 0;              // since a sample that may enter a fit
+  double given_until_s_ = kNever_s;  // end of the last wave given
   std::int64_t waves_ = 0;
 };
 

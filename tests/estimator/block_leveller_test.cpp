@@ -102,5 +102,32 @@ TEST(BlockLeveller, BeginsAnewAfterAGapInWhichTheRotationIsUnknown) {
   EXPECT_LT(lean_rad(record.q_NB[6000] * turned, out[6000].q_NB), 3e-3);
 }
 
+TEST(BlockLeveller, BeginsWithTheFirstUsableSampleHoweverManyCameBefore) {
+  SyntheticWaves waves;
+  waves.rate_Hz = 50;
+  waves.duration_s = 320;
+  SyntheticRecord record = testing::synthesize(waves, gyro_bias(0.2), 1);
+  constexpr std::size_t kBad = 6000;  // longer than a block
+  for (std::size_t i = 0; i < kBad; ++i) record.samples[i].f_B.setConstant(kUnknown);
+  BlockLeveller leveller{{}};
+  const std::deque<LevelledSample> out = level(record.samples, leveller);
+  ASSERT_EQ(out.size(), record.samples.size());
+  for (std::size_t i = 0; i < out.size(); ++i) ASSERT_EQ(out[i].seq, record.samples[i].seq);
+  EXPECT_EQ(out[kBad].t_s, 0);
+  for (std::size_t i = kBad; i < out.size(); i += 500)
+    EXPECT_LT(lean_rad(record.q_NB[i], out[i].q_NB), 1e-2) << i;
+}
+
+TEST(BlockLeveller, ABlockShorterThanANodeIsOnlyABadSetting) {
+  SyntheticWaves waves;
+  waves.rate_Hz = 50;
+  waves.duration_s = 10;
+  const SyntheticRecord record = testing::synthesize(waves, gyro_bias(0.2), 1);
+  BlockLevellerSettings settings;
+  settings.block_s = 0.05;
+  BlockLeveller leveller{settings};
+  EXPECT_EQ(level(record.samples, leveller).size(), record.samples.size());
+}
+
 }  // namespace
 }  // namespace waverig::estimator

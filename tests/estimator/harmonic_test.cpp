@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "lcmtypes/flags.h"
 #include "tests/estimator/collector.h"
@@ -262,6 +263,70 @@ TEST(Harmonic, BadSamplesCostNothingButTheirFlags) {
     flags |= wave.flags;
   }
   EXPECT_EQ(flags & (flag::kGap | flag::kSpike | flag::kRange), flag::kGap | flag::kSpike | flag::kRange);
+}
+
+// Waves of 6 s and 1 m whose samples from one on come late.
+std::vector<ImuSample> with_gap(std::size_t from, std::int64_t gap_us) {
+  std::vector<ImuSample> samples =
+      testing::synthesize(waves_of(6, 1, Swing::kPendulum), SensorErrors{}, 1).samples;
+  for (std::size_t i = from; i < samples.size(); ++i) samples[i].utime += gap_us;
+  return samples;
+}
+
+TEST(Harmonic, BeginsWithTheFirstUsableSample) {
+  SyntheticRecord record = testing::synthesize(waves_of(6, 1, Swing::kPendulum), SensorErrors{}, 1);
+  constexpr std::size_t kBad = 6000;
+  for (std::size_t i = 0; i < kBad; ++i) record.samples[i].f_B.setConstant(kUnknown);
+  record.samples.front().utime -= 3'600'000'000'000;  // nor is its time of any use
+  const Collector found = measure(record, knowing(kFresh));
+  ASSERT_EQ(found.heaves.size(), record.samples.size());
+  for (std::size_t i = 0; i < kBad; ++i) ASSERT_TRUE(std::isnan(found.heaves[i].heave_m));
+  EXPECT_GE(found.waves.size(), 28U);
+  for (const Wave& wave : found.waves) {
+    EXPECT_GT(wave.start_utime, record.samples[kBad].utime);
+    EXPECT_NEAR(wave.height_m, 1, 0.015);
+  }
+}
+
+TEST(Harmonic, AGapCostsNothingHoweverLong) {
+  for (const std::int64_t gap_s : {60LL, 86'400LL, 1'700'000'000LL}) {  // the last: a clock that is set
+    const std::vector<ImuSample> samples = with_gap(7500, gap_s * 1'000'000);
+    const Collector found = measure({samples, {}, {}, 0}, knowing(kFresh));
+    ASSERT_EQ(found.heaves.size(), samples.size()) << gap_s;
+    EXPECT_GE(found.waves.size(), 46U) << gap_s;
+    for (const Wave& wave : found.waves) {
+      EXPECT_NEAR(wave.height_m, 1, 0.015) << gap_s;
+      EXPECT_FALSE(wave.start_utime < samples[7499].utime &&
+                   wave.start_utime + std::llround(wave.period_s * 1e6) > samples[7500].utime);
+    }
+  }
+}
+
+TEST(Harmonic, HoldsNoSamplesBackForASensorThatIsStuck) {
+  const std::vector<ImuSample> good =
+      testing::synthesize(waves_of(6, 1, Swing::kPendulum), SensorErrors{}, 1).samples;
+  const auto stuck = [](ImuSample& s) { s.f_B = Vector3d(0, 0, -9.8); };
+  const auto no_number = [](ImuSample& s) { s.f_B.setConstant(kUnknown); };
+  const auto saturated = [](ImuSample& s) { s.f_B.z() -= 40; };
+  for (const std::function<void(ImuSample&)>& fail :
+       {std::function<void(ImuSample&)>(stuck), {no_number}, {saturated}}) {
+    HarmonicSettings own;
+    own.guard.accel_limit_mps2 = 39;
+    Harmonic method{knowing(kFresh), own};
+    Collector found;
+    std::size_t most_held = 0;
+    for (std::size_t i = 0; i < good.size(); ++i) {
+      ImuSample s = good[i];
+      if (i >= 6000) fail(s);
+      method.add(s, found);
+      if (i >= 6000 + 30 * 50) most_held = std::max(most_held, i + 1 - found.heaves.size());
+    }
+    EXPECT_EQ(most_held, 0U);
+    EXPECT_GE(found.waves.size(), 18U);
+    method.finish(found);
+    ASSERT_EQ(found.heaves.size(), good.size());
+    for (std::size_t i = 0; i < good.size(); ++i) ASSERT_EQ(found.heaves[i].seq, good[i].seq);
+  }
 }
 
 TEST(Harmonic, HeaveIsTheTruthWithinTheNoiseOfAWave) {
