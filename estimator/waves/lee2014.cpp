@@ -25,17 +25,21 @@ void Lee2014::add(const ImuSample& sample, Output& output) {
   // 1. The door.
   const GuardVerdict verdict = guard_.check(sample);
   if (verdict.usable) {
+    // A crest may lie in so long a gap, and a wave's way is not known across it.
+    const bool anew = verdict.dt_s > std::max(settings_.shortest_period_s, 2 * guard_.usual_interval_s());
+    if (anew) begin_anew();
     // 2. Attitude and levelling, eqs (2)-(9).
     const Quaterniond& q = attitude_.update(sample.f_B, sample.w_NB_B, verdict.dt_s);
     const Euler euler = euler_of(q);
     const double up_mps2 =
         -(levelled(sample.f_B, euler.roll_rad, euler.pitch_rad).z() + settings_.attitude.gravity_mps2);
     // 3. Heave, eq (10).
-    track(up_mps2, verdict.dt_s);
-    mean_s_ = std::min(mean_s_ + verdict.dt_s, settings_.mean_memory_s);
-    if (mean_s_ > 0) mean_a_mps2_ += (up_mps2 - mean_a_mps2_) * verdict.dt_s / mean_s_;
+    const double dt_s = anew ? 0 : verdict.dt_s;
+    track(up_mps2, dt_s);
+    mean_s_ = std::min(mean_s_ + dt_s, settings_.mean_memory_s);
+    if (dt_s > 0) mean_a_mps2_ += (up_mps2 - mean_a_mps2_) * std::min(dt_s / mean_s_, 1.0);
     // 4. Waves, eqs (11)-(13).
-    look_for_crest(sample, verdict.dt_s, verdict.flags, output);
+    look_for_crest(sample, dt_s, verdict.flags, output);
   }
   HeaveSample heave;
   heave.utime = sample.utime;
@@ -48,6 +52,14 @@ void Lee2014::add(const ImuSample& sample, Output& output) {
 }
 
 void Lee2014::finish(Output&) {}  // the last wave, not closed by a crest, is left out
+
+// After a gap: the trace goes on from where it was, as at the start of a record. What the mean acceleration
+// has learnt stays.
+void Lee2014::begin_anew() {
+  started_ = false;
+  P_aa_ = P_va_ = P_pa_ = 0;
+  restart_reference();
+}
 
 void Lee2014::track(double up_mps2, double dt) {
   if (!started_) {

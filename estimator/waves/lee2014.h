@@ -13,7 +13,8 @@
 // trace, each fitted wave moves the line by its gamma and beta, and the mean acceleration so far (a bias)
 // bends the line for the zero of the velocity alone, not for the fit. So a bias b stays in the height as b
 // T^2 / pi^2, and what calibration leaves of it is the wave's calibration uncertainty; the paper states none.
-// A lost line, no crest for the longest period, starts anew at the latest sample.
+// A lost line, no crest for the longest period, starts anew at the latest sample; so does the one after a gap
+// in which a crest may lie, across which nothing is integrated.
 #pragma once
 #include <vector>
 
@@ -42,6 +43,7 @@ class Lee2014 final : public Method {
   struct Point {
     double t_s, p_m;  // since the crest; referenced height
   };
+  void begin_anew();
   void track(double up_mps2, double dt_s);
   void look_for_crest(const ImuSample& sample, double dt_s, std::int32_t flags, Output& output);
   void close_wave(double period_s, std::int32_t flags, Output& output);

@@ -69,6 +69,31 @@ TEST(Lee2014, GivesOneHeaveASampleWithItsTimeAndNumber) {
   }
 }
 
+TEST(Lee2014, FindsItsWavesAgainAtOnceAfterAGapHoweverLong) {
+  const SyntheticRecord record = testing::synthesize(waves_of(6, 1), SensorErrors{}, 1);
+  for (const std::int64_t gap_s : {5, 60, 86'400}) {
+    for (const std::size_t from : {std::size_t{1}, std::size_t{6000}}) {
+      std::vector<ImuSample> samples = record.samples;
+      for (std::size_t i = from; i < samples.size(); ++i) samples[i].utime += gap_s * 1'000'000;
+      Lee2014 method{MethodSettings{}};
+      const Collector found = testing::run(method, samples);
+      EXPECT_LT(std::abs(found.heaves.back().heave_m), 300) << gap_s;  // a few milli-g of tilt for minutes
+      int after = 0;
+      for (const Wave& wave : found.waves) {
+        EXPECT_TRUE(wave.start_utime > samples[from].utime ||
+                    wave.start_utime + std::llround(wave.period_s * 1e6) < samples[from].utime);
+        if (from < 2 || wave.start_utime < samples[from].utime) continue;
+        if (after++ == 0) {
+          EXPECT_LT(wave.start_utime, samples[from].utime + 12'000'000) << gap_s;
+        } else {
+          EXPECT_NEAR(wave.height_m, 1, 0.05) << gap_s << " " << after;
+        }
+      }
+      EXPECT_GE(after, from > 1 ? 17 : 0) << gap_s;
+    }
+  }
+}
+
 TEST(Lee2014, TraceOfEquation10RunsAwayWithHalfTheBiasTimesTimeSquared) {
   const double bias = 0.02;
   Lee2014 method{MethodSettings{}};
