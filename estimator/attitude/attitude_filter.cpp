@@ -10,10 +10,16 @@ namespace {
 
 constexpr double kSaturatedRate_radps = 0.5;  // how wrong a saturated gyro may be
 constexpr double kSaturatedAccel_mps2 = 10.0;
+constexpr double kUnseenTurn_radps3 = 1, kUnseenRate_radps = 0.3;
+constexpr double kUnseenSpeed_mps4 = 3, kUnseenAccel_mps2 = 1;
 constexpr double kStartPath_m = 1.0, kStartSpeed_mps = 1.0;
 constexpr double kSettledTilt_rad = 0.25 * kDegree;
 
 }  // namespace
+
+double unseen_speed_mps(double dt_s) {
+  return std::min(kUnseenSpeed_mps4 * dt_s * dt_s * dt_s, kUnseenAccel_mps2 * dt_s);
+}
 
 TiltChain::TiltChain(const AttitudeSettings& s) {
   P = Eigen::Vector4d(square(kStartPath_m), square(kStartSpeed_mps), square(s.start_tilt_sigma_rad),
@@ -84,7 +90,8 @@ const AttitudeSample& AttitudeFilter::update(const ImuSample& sample) {
   corrected_ = false;
   const Vector3d w_B = sample.w_NB_B - state_.gyro_bias_B;
   const Vector3d g_N(0, 0, settings_.gravity_mps2);
-  if (!started_ || dt > settings_.longest_gap_s) {
+  const bool gap = (sample.flags & flag::kGap) != 0;
+  if (!started_ || (gap && dt > settings_.longest_gap_s)) {
     restart(sample);
     state_.a_N = state_.q_NB * sample.f_B + g_N;
   } else {
@@ -99,6 +106,10 @@ const AttitudeSample& AttitudeFilter::update(const ImuSample& sample) {
     if (sample.flags & flag::kSaturation) {
       chain_.P(1, 1) += square(kSaturatedAccel_mps2 * dt);
       chain_.P(2, 2) += square(kSaturatedRate_radps * dt);
+    }
+    if (gap) {
+      chain_.P(1, 1) += square(unseen_speed_mps(dt));
+      chain_.P(2, 2) += square(std::min(kUnseenTurn_radps3 * dt * dt * dt, kUnseenRate_radps * dt));
     }
     since_correction_s_ += dt;
     if (since_correction_s_ >= settings_.update_interval_s - 1e-6) correct(sample.utime, since_correction_s_);

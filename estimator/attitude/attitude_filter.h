@@ -30,7 +30,7 @@ struct AttitudeSettings {
   double motion_m2s = 0.3;            // two-sided density of the horizontal path taken as white
   double start_tilt_sigma_rad = 0.1;  // of levelling by one sample of specific force
   double update_interval_s = 0.1;     // between two corrections
-  double longest_gap_s = 1.0;         // beyond it the attitude is levelled anew
+  double longest_gap_s = 0.3;         // beyond it the attitude is levelled anew
 };
 
 struct AttitudeSample {
@@ -41,6 +41,10 @@ struct AttitudeSample {
   double tilt_sigma_rad = kUnknown;            // standard uncertainty of the tilt, per horizontal axis
   bool settled = false;                        // the tilt no longer remembers its start
 };
+
+// What a body may gain in speed, per axis, between two samples dt_s apart, unseen: the error of the trapezoid
+// in a short sea, at most that sea's motion. Standard uncertainty.
+double unseen_speed_mps(double dt_s);
 
 // The chain's covariance and its step, shared by filter and smoother. State (p, v, theta, beta).
 struct TiltChain {
@@ -71,7 +75,8 @@ class AttitudeFilter {
   AttitudeFilter(const AttitudeSettings& settings, const Quaterniond& q_NB, const Vector3d& gyro_bias_B);
 
   // Samples in increasing utime, repeats and stragglers already dropped; gaps are welcome. flag::kSaturation
-  // on a sample widens the uncertainty. Never throws.
+  // and flag::kGap on a sample widen the uncertainty; after a gap beyond longest_gap_s the attitude is
+  // levelled anew. Never throws.
   const AttitudeSample& update(const ImuSample& sample);
 
   // The correction made by the last update(), if it made one.

@@ -36,13 +36,15 @@ Eigen::Array2d gyro_scale_leaks_mps2(const AttitudeSample& attitude, const Motio
                                      const Vector3d& f_B);
 
 struct MeanDisturbance {
-  double sum_m2ps3 = 0;
+  double sum_m2ps3 = 0, gap_m2ps3 = 0;
   int count = 0;
   void add(double density_m2ps3) {
     sum_m2ps3 += density_m2ps3;
     ++count;
   }
-  double mean() const { return count > 0 ? sum_m2ps3 / count : 0.0; }
+  // The samples of this interval left out what may have changed the speed by so much.
+  void add_gap(double speed_mps, double interval_s) { gap_m2ps3 += speed_mps * speed_mps / interval_s; }
+  double mean() const { return (count > 0 ? sum_m2ps3 / count : 0.0) + gap_m2ps3; }
 };
 
 // Standard uncertainty of the mean vertical acceleration, by what calibration and gravity leave.

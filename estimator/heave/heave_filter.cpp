@@ -24,8 +24,9 @@ constexpr Surprise kSteady{12, 3}, kRestless{2, 2};
 constexpr double kRestlessFrom = 1.25, kRestlessShare = 1.0 / 120, kMostRestless = 30;
 constexpr double kUsualGrowth = 1.02;  // a node; how soon the variance of innovations is found to have grown
 constexpr double kFastestRise = 10, kLargestSurprise = 1e6;
-constexpr double kCalmDown = 0.95;    // a node
-constexpr double kRoughShare = 0.05;  // of a node in the mean that tells another sea
+constexpr double kCalmDown = 0.95;         // a node
+constexpr double kRoughShare = 0.05;       // of a node in the mean that tells another sea
+constexpr double kRecentShare = 1.0 / 40;  // of a node
 constexpr double kQuiet = 0.06;  // of the sea's acceleration: a body that rests, its sensor's noise and all
 constexpr double kShortestRest_s = 1.5;
 constexpr double kRestVariance_m2 = 1e-8;  // by which a resting body is found to have moved, a node
@@ -105,6 +106,7 @@ void HeaveFilter::step(const HeaveStep& step) {
 void HeaveFilter::look_for_rest(const PathIncrement& sea, double turn_mps2) {
   const double dt = model_.interval_s;
   const double a_mps2 = second_difference_m(std::exchange(last_, sea), sea, dt) / (dt * dt);
+  recent_m2ps4_ += kRecentShare * (a_mps2 * a_mps2 - recent_m2ps4_);
   const bool quiet = std::hypot(a_mps2, turn_mps2) < kQuiet * model_.acceleration_mps2();
   quiet_ = quiet ? quiet_ + 1 : 0;
   rests_ = quiet_ * dt > std::max(kShortestRest_s, std::numbers::pi / model_.mean_frequency_radps);

@@ -13,6 +13,7 @@
 // bias alone. The sea that begins again is the same one, near the level of the rest.
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <limits>
 
 #include "estimator/heave/path_integrator.h"
@@ -69,7 +70,8 @@ class HeaveFilter {
   bool surprised() const { return roughness_ > kTooRough; }  // the model has become too small for the motion
   double rest_s() const { return rests_ ? quiet_ * model_.interval_s : 0; }  // how long the body has rested
   bool stirs() const { return stirs_; }  // taken to rest, and moved, by far less than the sea would
-  double correction_m() const { return correction_m_; }  // of heave by the last step, if by a rest
+  double recent_mps2() const { return std::sqrt(recent_m2ps4_); }  // rms acceleration of the last ten seconds
+  double correction_m() const { return correction_m_; }            // of heave by the last step, if by a rest
   const SeaModel& model() const { return model_; }
   int order() const { return model_.order(); }
   const Eigen::Array2d& gyro_scale() const { return gyro_scale_; }  // relative error about body x and y
@@ -103,7 +105,7 @@ class HeaveFilter {
   int quiet_ = 0;  // nodes without motion
   int onset_ = 0;  // nodes still to go after a rest, until roughness may tell of another sea
   bool rests_ = false, stirs_ = false;
-  double correction_m_ = 0;
+  double correction_m_ = 0, recent_m2ps4_ = 0;
 };
 
 }  // namespace waverig::estimator

@@ -38,12 +38,12 @@ class Integrator {
 
   // Takes the next sample. Calls node(node_utime, increment) for each node passed, in order; afterwards
   // partial() is the increment from the last node to this sample. Between samples the acceleration runs along
-  // the parabola through the last three.
+  // the parabola through the last three, where they are evenly spaced.
   template <class Node>
   void add(std::int64_t utime, const Value& a_mps2, Node&& node) {
     const Segment segment = segment_to(utime, a_mps2);
     double from_s = 0;
-    while (node_utime_ + node_us_ <= utime) {
+    while (utime - node_utime_ >= node_us_) {
       node_utime_ += node_us_;
       const double to_s = 1e-6 * static_cast<double>(node_utime_ - last_utime_);
       advance(segment, from_s, to_s);
@@ -63,6 +63,7 @@ class Integrator {
   double node_interval_s() const { return 1e-6 * static_cast<double>(node_us_); }
 
  private:
+  static constexpr double kAlike = 3;
   struct Segment {  // a(s) = c0 + c1 s + c2 s^2, s in seconds from the sample before
     Value c0, c1, c2;
     double length_s;
@@ -70,8 +71,10 @@ class Integrator {
   Segment segment_to(std::int64_t utime, const Value& a_mps2) const {
     const double h = 1e-6 * static_cast<double>(utime - last_utime_);
     const Value slope = (a_mps2 - last_a_mps2_) / h;
-    // Newton's divided differences; a straight line while there are only two samples.
-    const Value c2 = last_length_s_ > 0 ? Value((slope - last_slope_) / (h + last_length_s_)) : Value(0.0);
+    // Newton's divided differences; a straight line while there are only two samples, and after an interval
+    // of quite another length, whose secant would carry the noise of its samples far.
+    const bool alike = last_length_s_ > h / kAlike && last_length_s_ < kAlike * h;
+    const Value c2 = alike ? Value((slope - last_slope_) / (h + last_length_s_)) : Value(0.0);
     return {last_a_mps2_, slope - c2 * h, c2, h};
   }
   void advance(const Segment& g, double from_s, double to_s) {

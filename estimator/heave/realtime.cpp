@@ -19,6 +19,11 @@ constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabo
 constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
 constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
+constexpr int kMostNodesBetween = 8;  // two samples, where a lag is waited for
+// Beyond so many standard deviations of its sea heave has run away: the sensor was knocked, or its offset
+// changed, which was taken for sea.
+constexpr double kLost = 6;
+constexpr double kSlowest_radps = 0.4;  // of a sea that is not known yet
 constexpr double kRethought_s = 60;
 constexpr std::array kSwells = {5e-4, 0.03, 0.5};  // relative variances, of which one is believed
 constexpr double kLargeSwell = 0.3;                // a swell is the less usual the larger, by this power
@@ -53,7 +58,7 @@ Realtime::Realtime(const MethodSettings& settings)
       identifier_(identifier_settings(settings.sensor)),
       filter_(identifier_.model(), 0, 0),
       counter_(settings.sensor) {
-  const double longest = (filter_.order() - 2) * kFineInterval_s;
+  const double longest = (filter_.order() - kMostNodesBetween) * kFineInterval_s;
   if (!(settings.fixed_lag_s >= 0 && settings.fixed_lag_s <= longest))
     throw UserError("realtime: fixed_lag_s = " + std::to_string(settings.fixed_lag_s) + " is outside 0 to " +
                     std::to_string(longest) + " s");
@@ -126,6 +131,7 @@ void Realtime::start_path(const ImuSample& sample, const AttitudeSample& attitud
 // After a gap.
 void Realtime::resume(const ImuSample& sample, Output& output) {
   finish(output);  // no later node tells more of what is held
+  counter_.gap();
   const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
   filter_.skip(static_cast<int>(std::ceil(std::min(missing_s, kLongestSkip_s) / kFineInterval_s)));
   settled_nodes_ = 0;
@@ -144,6 +150,10 @@ void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude,
   motion_.follow(attitude, share);
   disturbance_.add(disturbance_m2ps3(attitude, sample.flags, settings_.sensor.gravity_mps2) +
                    turned_offset_m2ps3(attitude, motion_, settings_.sensor));
+  if (sample.flags & flag::kGap)
+    disturbance_.add_gap(
+        unseen_speed_mps(static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond),
+        kFineInterval_s);
   force_.add(sample.f_B);
   Eigen::Array3d up;
   up << -attitude.a_N.z(), gyro_scale_leaks_mps2(attitude, motion_, sample.f_B);
@@ -162,6 +172,10 @@ void Realtime::filter(const HeaveStep& step) {
   filter_.step(step);
   jump_m_ -= filter_.correction_m();
   ++settled_nodes_;
+  if (lost()) {
+    find_again();
+    return;
+  }
   if (!rethinks_ && (filter_.stirs() || filter_.rest_s() > kSeaIsGone_s)) {
     rise_.reset();
     forget_sea(true);
@@ -178,6 +192,23 @@ void Realtime::filter(const HeaveStep& step) {
   } else if (rethinks_) {
     due_ |= nodes_ > thought_at_ + thought_at_ / kRethoughtAgain;
   }
+}
+
+bool Realtime::lost() const {
+  if (rethinks_ || rise_ || !identifier_.has_spectrum() || filter_.rest_s() > 0) return false;
+  double sigma_m = std::sqrt(filter_.model().heave_variance_m2());
+  if (identifier_.age() < kOldEnough)
+    sigma_m = std::max(sigma_m, filter_.recent_mps2() / square(kSlowest_radps));
+  return std::abs(filter_.heave_m({}, 0)) > kLost * sigma_m;
+}
+
+// The sea is known by its accelerations: path, speed and offset begin anew.
+void Realtime::find_again() {
+  const double offset_mps2 =
+      std::hypot(offset_sigma_mps2(settings_.sensor), kOffsetDoubt * motion_.excess_mps2);
+  filter_ = HeaveFilter(identifier_.model(), offset_mps2, kScaleDoubt * settings_.sensor.gyro_scale_sigma);
+  settled_nodes_ = 0;
+  jump_m_ = 0;
 }
 
 void Realtime::forget_sea(bool calm) {
@@ -278,7 +309,8 @@ void Realtime::locate(const AttitudeSample& attitude, Held& held) const {
 }
 
 void Realtime::estimate(const Held& held, HeaveSample& out) const {
-  const auto ago = static_cast<int>(nodes_ - held.node);  // nodes since the one before the sample
+  const auto since = static_cast<int>(nodes_ - held.node);  // nodes, the one before the sample the first
+  const int ago = std::min(since, filter_.order() - 1);
   const double t = held.since_node_s;
   double variance;
   if (ago == 0) {

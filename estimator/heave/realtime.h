@@ -57,6 +57,8 @@ class Realtime : public Method {
   HeaveFilter most_probable(const HeaveFilter* calm, const std::vector<HeaveStep>& steps);
   AttitudeSample rethink();
   void rethink_rise();
+  bool lost() const;
+  void find_again();
   void forget_sea(bool calm);
   void tell_without_jump(HeaveFilter filter);
   void locate(const AttitudeSample& attitude, Held& held) const;

@@ -7,6 +7,7 @@
 #include "estimator/heave/heave_smoother.h"
 #include "estimator/heave/path_integrator.h"
 #include "estimator/heave/sea_identifier.h"
+#include "estimator/heave/wave_counter.h"
 #include "lcmtypes/flags.h"
 
 namespace waverig::estimator {
@@ -35,6 +36,10 @@ Piece integrate(const Record& record, const std::vector<AttitudeSample>& attitud
     const ImuSample& sample = record.samples()[i];
     const double a_up = -attitude[i].a_N.z();
     disturbance.add(disturbance_m2ps3(attitude[i], sample.flags, gravity_mps2));
+    if (i > begin && (sample.flags & flag::kGap))
+      disturbance.add_gap(
+          unseen_speed_mps(static_cast<double>(sample.utime - record.samples()[i - 1].utime) * kMicrosecond),
+          interval_s);
     if (i == begin) {
       integrator.start(sample.utime, a_up);
     } else {
@@ -145,6 +150,25 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
     h.heave_sigma_m = std::sqrt(square(h.heave_sigma_m) + systematic);
   }
   return smoothed;
+}
+
+std::vector<Wave> tell(const Record& record, const SmoothedRecord& smoothed, const SensorKnowledge& sensor,
+                       Output& output) {
+  std::vector<Wave> waves;
+  WaveCounter counter(sensor);
+  auto piece = record.pieces().begin();
+  for (std::size_t i = 0; i < smoothed.heave.size(); ++i) {
+    if (piece != record.pieces().end() && *piece == i) {
+      counter.gap();
+      ++piece;
+    }
+    output.heave(smoothed.heave[i]);
+    if (const auto wave = counter.add(smoothed.heave[i], smoothed.attitude[i].tilt_sigma_rad)) {
+      output.wave(*wave);
+      waves.push_back(*wave);
+    }
+  }
+  return waves;
 }
 
 }  // namespace waverig::estimator

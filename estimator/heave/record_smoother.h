@@ -34,4 +34,8 @@ struct SmoothedRecord {
 
 SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor);
 
+// Gives every heave, and each wave as it ends; the waves are the answer, too.
+std::vector<Wave> tell(const Record& record, const SmoothedRecord& smoothed, const SensorKnowledge& sensor,
+                       Output& output);
+
 }  // namespace waverig::estimator

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "estimator/heave/node_spectrum.h"
-#include "estimator/heave/wave_counter.h"
 #include "lcmtypes/flags.h"
 
 namespace waverig::estimator {
@@ -52,6 +51,18 @@ std::vector<Nodes> nodes_of(const Record& record, const SmoothedRecord& smoothed
     pieces.push_back(std::move(nodes));
   }
   return pieces;
+}
+
+// Duration of the pieces without a gap.
+double seen_s(const Record& record) {
+  double seen_s = 0;
+  for (std::size_t p = 0; p < record.pieces().size(); ++p) {
+    const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : record.samples().size();
+    seen_s +=
+        static_cast<double>(record.samples()[end - 1].utime - record.samples()[record.pieces()[p]].utime) *
+        kMicrosecond;
+  }
+  return seen_s;
 }
 
 // Density of one of the nodes' series by Welch's method, and mean squares of smoothed heave and rate over the
@@ -224,9 +235,8 @@ SeaState sea_state(const Record& record, const SmoothedRecord& smoothed, const S
     sea.flags = flag::kTooFewWaves;
     return sea;
   }
-  const std::int64_t begin = record.samples().front().utime, end = record.samples().back().utime;
-  sea.start_utime = begin;
-  sea.duration_s = static_cast<double>(end - begin) * kMicrosecond;
+  sea.start_utime = record.samples().front().utime;
+  sea.duration_s = seen_s(record);
   const double usual_s = sea.duration_s / static_cast<double>(record.samples().size());
   const double interval_s = std::max(kSpectrumInterval_s, usual_s);
   const std::vector<Nodes> pieces = nodes_of(record, smoothed, interval_s);
@@ -242,15 +252,8 @@ SeaState sea_state(const Record& record, const SmoothedRecord& smoothed, const S
 void Spectral::finish(Output& output) {
   const SmoothedRecord smoothed = smooth_record(record_, settings_.sensor);
   SeaState sea = sea_state(record_, smoothed, settings_.sensor);
-  WaveCounter counter(settings_.sensor);
   std::vector<double> heights;
-  for (std::size_t i = 0; i < smoothed.heave.size(); ++i) {
-    output.heave(smoothed.heave[i]);
-    if (const auto wave = counter.add(smoothed.heave[i], smoothed.attitude[i].tilt_sigma_rad)) {
-      output.wave(*wave);
-      heights.push_back(wave->height_m);
-    }
-  }
+  for (const Wave& wave : tell(record_, smoothed, settings_.sensor, output)) heights.push_back(wave.height_m);
   set_heights(heights, sea);
   output.sea(sea);
 }

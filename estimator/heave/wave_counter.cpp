@@ -12,7 +12,6 @@ constexpr double kDeadBandSigmas = 2;
 }  // namespace
 
 std::optional<Wave> WaveCounter::add(const HeaveSample& sample, double tilt_sigma_rad) {
-  if (sample.flags & flag::kGap) below_ = has_last_ = has_start_ = false;
   const double h = sample.heave_m, band = kDeadBandSigmas * sample.heave_sigma_m;
   if (has_last_ && last_heave_m_ < 0 && h >= 0) {
     const double span_us = static_cast<double>(sample.utime - last_utime_);

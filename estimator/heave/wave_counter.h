@@ -13,9 +13,10 @@ class WaveCounter {
 
   // Heave about its zero line, in order of time. Answers with the wave this sample completes. A crossing
   // counts once the heave has been below minus twice its own sigma and comes above plus twice: noise makes no
-  // waves. Samples with flag::kGap end the wave they fall into without an answer; flag::kSettling marks a
-  // wave as it marks its samples.
+  // waves. A wave carries the flags of its samples.
   std::optional<Wave> add(const HeaveSample& sample, double tilt_sigma_rad);
+  // Heave begins anew after a gap that was not bridged: the wave it falls into is left out.
+  void gap() { below_ = has_last_ = has_start_ = false; }
 
  private:
   std::optional<Wave> cross(double tilt_sigma_rad);

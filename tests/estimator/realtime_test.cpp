@@ -1,5 +1,6 @@
 #include "estimator/heave/realtime.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -426,6 +427,46 @@ TEST(Realtime, BridgesShortGapsAndRecoversFromLongOnes) {
   EXPECT_TRUE(out.heaves[after].flags & flag::kGap);
   EXPECT_LT(rms_over_hm0(out.heaves, record, kSettled, after), 0.03);
   EXPECT_LT(rms_over_hm0(out.heaves, record, after + 12000, out.heaves.size()), 0.03);
+}
+
+// While nothing is seen a leaning body turns on.
+TEST(Realtime, IsNotLostByAGapOnALeaningBody) {
+  for (const double gap_s : {0.2, 0.35, 0.5, 0.7, 0.95, 1.5})
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      const SeaRecord record = sea_record({.tp_s = 3, .hm0_m = 0.5, .duration_s = 480}, seed);
+      std::vector<estimator::ImuSample> samples;
+      for (std::size_t i = 0; i < record.samples.size(); ++i)
+        if (i < kSettled || i >= kSettled + static_cast<std::size_t>(100 * gap_s)) samples.push_back(record.samples[i]);
+      const Collector out = run_realtime(samples);
+      EXPECT_LT(rms_over_hm0(out.heaves, record, kSettled, kSettled + 2000), 0.2) << gap_s << " s, seed " << seed;
+      EXPECT_LT(rms_over_hm0(out.heaves, record, kSettled + 6000, out.heaves.size()), 0.1)
+          << gap_s << " s, seed " << seed;
+    }
+}
+
+// What no sea does is not to be taken for sea until heave is a kilometre off.
+TEST(Realtime, FindsItsSeaAgainAfterAnOffsetThatChangesOrAKnock) {
+  struct Fault {
+    double offset_mps2, turn_radps, lasts_s;
+  };
+  for (const Fault& fault : {Fault{0.05, 0, 1e9}, {0.2, 0, 1e9}, {20, 0, 0.1}, {0, 0.5 * kDegree, 1e9}})
+    for (const SeaCase& sea : {SeaCase{.tp_s = 3, .hm0_m = 0.5}, {.tp_s = 8, .hm0_m = 1.5}})
+      for (const std::uint64_t seed : {1, 2}) {
+        SeaRecord record = sea_record({.tp_s = sea.tp_s, .hm0_m = sea.hm0_m, .duration_s = 800}, seed);
+        for (std::size_t i = kSettled; i < record.samples.size(); ++i) {
+          if (static_cast<double>(i - kSettled) > 100 * fault.lasts_s) break;
+          record.samples[i].f_B.z() -= fault.offset_mps2;
+          record.samples[i].w_NB_B.x() += fault.turn_radps;
+        }
+        const Collector out = run_realtime(record.samples);
+        const std::string what = fmt::format("{} m/s^2, {} rad/s for {} s in {} s, seed {}", fault.offset_mps2,
+                                             fault.turn_radps, fault.lasts_s, sea.tp_s, seed);
+        double worst_m = 0;
+        for (const HeaveSample& h : out.heaves)
+          worst_m = std::max(worst_m, std::abs(h.heave_m - record.heave_m[static_cast<std::size_t>(h.seq)]));
+        EXPECT_LT(worst_m, 80) << what;
+        EXPECT_LT(rms_over_hm0(out.heaves, record, kSettled + 30000, out.heaves.size()), 0.04) << what;
+      }
 }
 
 TEST(Realtime, RecoversFromAGapInItsFirstSeconds) {

@@ -102,6 +102,31 @@ TEST(Smoothed, TreatsThePiecesBetweenGapsAsRecords) {
   for (const estimator::Wave& wave : out.waves) EXPECT_LT(wave.period_s, 20);
 }
 
+TEST(Smoothed, ALostSampleEndsNoWave) {
+  const SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 1, .duration_s = 600}, 3);
+  std::vector<estimator::ImuSample> samples;
+  for (std::size_t i = 0; i < record.samples.size(); ++i)
+    if (i % 97 != 50) samples.push_back(record.samples[i]);
+  const Collector whole = run_smoothed(record.samples), lost = run_smoothed(samples);
+  EXPECT_EQ(lost.waves.size(), whole.waves.size());
+  EXPECT_TRUE(lost.waves[3].flags & flag::kGap);
+}
+
+// Two samples a microsecond apart differ by their noise, which is no slope.
+TEST(Smoothed, SamplesCloseTogetherTellNoSlope) {
+  const SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 1, .duration_s = 600}, 3);
+  std::vector<estimator::ImuSample> samples;
+  RandomStream noise(5, "close");
+  for (const auto& sample : record.samples) {
+    samples.push_back(sample);
+    if (sample.seq % 2000 != 1000) continue;
+    samples.push_back(sample);
+    samples.back().utime += 1;
+    samples.back().f_B.z() += noise.gaussian(0.02);
+  }
+  EXPECT_LT(rms_over_hm0(run_smoothed(samples).heaves, record, 0, samples.size()), 0.005);
+}
+
 TEST(Smoothed, TakesRecordsOfAnyLength) {
   const SeaRecord record = sea_record({.duration_s = 30}, 7);
   for (const std::size_t n : {0u, 1u, 2u, 49u, 50u, 51u, 120u, 700u, 3000u}) {

@@ -115,6 +115,17 @@ TEST(Spectral, OfAMinuteOfASwellGivesItsHeightAndPeriod) {
   }
 }
 
+TEST(Spectral, AGapIsNoTimeThatWasSeen) {
+  SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 1, .duration_s = 600}, 5);
+  const estimator::SeaState whole = run_spectral(record.samples);
+  for (std::size_t i = 30000; i < record.samples.size(); ++i) record.samples[i].utime += 86'400'000'000;
+  const estimator::SeaState sea = run_spectral(record.samples);
+  EXPECT_NEAR(sea.hm0_m / whole.hm0_m, 1, 0.003);
+  EXPECT_NEAR(sea.tm02_s / whole.tm02_s, 1, 0.003);
+  EXPECT_NEAR(sea.duration_s, 600, 1);
+  EXPECT_EQ(sea.flags & flag::kTooFewWaves, 0);
+}
+
 TEST(Spectral, SaysWhenThereIsTooLittle) {
   const SeaRecord record = sea_record({.duration_s = 20}, 4);
   EXPECT_TRUE(run_spectral(record.samples).flags & flag::kTooFewWaves);
