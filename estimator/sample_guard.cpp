@@ -13,6 +13,7 @@ constexpr int kStep = 3;             // so many jumps in a row are a step, not a
 constexpr double kForgotten = 5;     // intervals after which the last sample says nothing of the next
 constexpr double kForget = 0.02;     // of the usual change, per sample
 constexpr int kNewRate = 10;         // so many gaps in a row are no gaps but a slower rate
+constexpr double kFar_s = 60;        // ahead; a bad time stamp less far silences for no longer
 constexpr std::int64_t kLatest_us = std::int64_t{1} << 62;  // so that no difference of times overflows
 
 double median(const std::array<double, 3>& x) {
@@ -22,9 +23,25 @@ double median(const std::array<double, 3>& x) {
 }  // namespace
 
 bool SampleGuard::in_range(const ImuSample& s) const {
-  return s.utime > -kLatest_us && s.utime < kLatest_us && s.f_B.allFinite() && s.w_NB_B.allFinite() &&
+  return s.f_B.allFinite() && s.w_NB_B.allFinite() &&
          s.f_B.cwiseAbs().maxCoeff() <= settings_.accel_plausible_mps2 &&
          s.w_NB_B.cwiseAbs().maxCoeff() <= settings_.gyro_plausible_radps;
+}
+
+// A time far ahead of all before is believed once the next sample is of it too. A bad time stamp stands
+// alone; believed, it would make stragglers of all that follow.
+bool SampleGuard::far_ahead(std::int64_t utime) {
+  const double far_s = std::max(kFar_s, kForgotten * interval_s_);
+  const bool far = interval_s_ > 0 && static_cast<double>(utime - newest_utime_) * kMicrosecond > far_s;
+  if (far && (!ahead_utime_ || utime <= *ahead_utime_)) {
+    ahead_utime_ = utime;
+    return true;
+  }
+  if (utime > newest_utime_) {  // else a straggler, which says nothing
+    newest_utime_ = utime;
+    ahead_utime_.reset();
+  }
+  return false;
 }
 
 bool SampleGuard::flat(const ImuSample& s) {
@@ -68,8 +85,14 @@ void SampleGuard::learn_interval(double dt_s, bool gap) {
 
 GuardVerdict SampleGuard::check(const ImuSample& s) {
   GuardVerdict verdict{.usable = false, .flags = s.flags, .dt_s = 0};
-  if (!in_range(s) || (started_ && s.utime <= last_utime_)) {
+  const bool dated = s.utime > -kLatest_us && s.utime < kLatest_us;
+  const bool ahead = dated && far_ahead(s.utime);
+  if (!dated || !in_range(s) || (started_ && s.utime <= last_utime_)) {
     verdict.flags |= flag::kRange;
+    return verdict;
+  }
+  if (ahead) {
+    verdict.flags |= flag::kGap;
     return verdict;
   }
   if (flat(s)) {

@@ -5,6 +5,7 @@
 //   not finite, or beyond what is plausible       kRange         not usable
 //   repeated or out-of-order time                 kRange         not usable (there is a sample of that time)
 //   samples missing before this one               kGap           usable; dt_s spans the gap
+//   a minute or more missing before this one      kGap           not usable, the next one is; else a bad time stamp
 //   one sample far off the way of its neighbours  kSpike         not usable (three in a row are a step and pass)
 //   the same reading for flat_line_s              kFlatLine      not usable until it changes
 //   an axis at its limit                          kSaturation    usable for its time and rate; f_B is wrong
@@ -13,6 +14,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "estimator/types.h"
 
@@ -43,13 +45,16 @@ class SampleGuard {
 
  private:
   bool in_range(const ImuSample& sample) const;
+  bool far_ahead(std::int64_t utime);
   bool flat(const ImuSample& sample);
   bool spike(const ImuSample& sample);
   void learn_interval(double dt_s, bool gap);
 
   SampleGuardSettings settings_;
   bool started_ = false;
-  std::int64_t last_utime_ = 0;  // of the last usable sample
+  std::int64_t last_utime_ = 0;                           // of the last usable sample
+  std::int64_t newest_utime_ = -(std::int64_t{1} << 62);  // usable or not
+  std::optional<std::int64_t> ahead_utime_;               // far ahead of it, not believed yet
   Vector3d last_f_B_ = Vector3d::Zero();
   double interval_s_ = 0;
   std::array<double, 3> latest_s_{};  // intervals

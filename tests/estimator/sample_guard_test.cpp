@@ -103,6 +103,43 @@ TEST_F(SampleGuardTest, TakesToANewRateButNotToLostSamples) {
   EXPECT_NEAR(guard_.usual_interval_s(), 0.01, 1e-3);
 }
 
+TEST_F(SampleGuardTest, ABadTimeStampCostsItsOwnSampleAlone) {
+  feed(0, 100);
+  for (const std::int64_t ahead_us : {70'000'000LL, 36'000'000'000LL, 1'700'000'000'000'000LL}) {
+    SampleGuard guard = guard_;
+    ImuSample s = sample(100);
+    s.utime += ahead_us;
+    const GuardVerdict verdict = guard.check(s);
+    EXPECT_FALSE(verdict.usable);
+    EXPECT_TRUE(verdict.flags & flag::kGap);
+    const GuardVerdict next = guard.check(sample(101));
+    EXPECT_TRUE(next.usable);
+    EXPECT_DOUBLE_EQ(next.dt_s, 0.02);
+    EXPECT_TRUE(guard.check(sample(102)).usable);
+  }
+}
+
+TEST_F(SampleGuardTest, BelievesALongGapFromItsSecondSampleOn) {
+  feed(0, 100);
+  EXPECT_FALSE(guard_.check(sample(10000)).usable);
+  EXPECT_FALSE(guard_.check(sample(50)).usable);  // a straggler says nothing for it
+  const GuardVerdict verdict = guard_.check(sample(10001));
+  EXPECT_TRUE(verdict.usable);
+  EXPECT_TRUE(verdict.flags & flag::kGap);
+  EXPECT_DOUBLE_EQ(verdict.dt_s, 99.02);
+  feed(10002, 10100);
+}
+
+TEST_F(SampleGuardTest, UnusableSamplesAreNoGap) {
+  feed(0, 100);
+  for (std::int64_t i = 100; i < 10000; ++i) {
+    ImuSample s = sample(i);
+    s.f_B.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(guard_.check(s).flags, flag::kRange);
+  }
+  EXPECT_TRUE(guard_.check(sample(10000)).usable);
+}
+
 TEST_F(SampleGuardTest, RefusesTimesWhoseDifferencesWouldOverflow) {
   for (const std::int64_t utime :
        {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
