@@ -20,10 +20,12 @@ constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
 constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
 constexpr int kMostNodesBetween = 8;  // two samples, where a lag is waited for
-// Beyond so many standard deviations of its sea heave has run away: the sensor was knocked, or its offset
-// changed, which was taken for sea.
+// Beyond so many standard deviations of its sea heave has run away if it stays there for longer than a wave's
+// crest, or if no other sea that moves as much as was felt just now goes so far. The sensor was knocked, or
+// its offset changed, which was taken for sea.
 constexpr double kLost = 6;
-constexpr double kSlowest_radps = 0.4;  // of a sea that is not known yet
+constexpr int kNoWave = 60;  // nodes
+constexpr double kSlowest_radps = 0.4;
 constexpr double kRethought_s = 60;
 constexpr std::array kSwells = {5e-4, 0.03, 0.5};  // relative variances, of which one is believed
 constexpr double kLargeSwell = 0.3;                // a swell is the less usual the larger, by this power
@@ -101,7 +103,7 @@ void Realtime::add(const ImuSample& raw, Output& output) {
   held.sample.utime = sample.utime;
   held.sample.seq = sample.seq;
   held.sample.flags = sample.flags;
-  if (!attitude.settled || static_cast<double>(settled_nodes_) * kFineInterval_s < kSettling_s)
+  if (beyond_ > 0 || !attitude.settled || static_cast<double>(settled_nodes_) * kFineInterval_s < kSettling_s)
     held.sample.flags |= flag::kSettling;
   locate(attitude, held);
   held_.push_back(held);
@@ -194,12 +196,13 @@ void Realtime::filter(const HeaveStep& step) {
   }
 }
 
-bool Realtime::lost() const {
-  if (rethinks_ || rise_ || !identifier_.has_spectrum() || filter_.rest_s() > 0) return false;
-  double sigma_m = std::sqrt(filter_.model().heave_variance_m2());
-  if (identifier_.age() < kOldEnough)
-    sigma_m = std::max(sigma_m, filter_.recent_mps2() / square(kSlowest_radps));
-  return std::abs(filter_.heave_m({}, 0)) > kLost * sigma_m;
+bool Realtime::lost() {
+  const double heave_m = std::abs(filter_.heave_m({}, 0));
+  const bool resting = rethinks_ || rise_ || !identifier_.has_spectrum() || filter_.rest_s() > 0;
+  const bool beyond = heave_m > kLost * std::sqrt(filter_.model().heave_variance_m2());
+  beyond_ = beyond && !resting ? beyond_ + 1 : 0;
+  return beyond_ > kNoWave ||
+         (beyond_ > 0 && heave_m > kLost * filter_.recent_mps2() / square(kSlowest_radps));
 }
 
 // The sea is known by its accelerations: path, speed and offset begin anew.
@@ -208,6 +211,7 @@ void Realtime::find_again() {
       std::hypot(offset_sigma_mps2(settings_.sensor), kOffsetDoubt * motion_.excess_mps2);
   filter_ = HeaveFilter(identifier_.model(), offset_mps2, kScaleDoubt * settings_.sensor.gyro_scale_sigma);
   settled_nodes_ = 0;
+  beyond_ = 0;
   jump_m_ = 0;
 }
 

@@ -57,7 +57,7 @@ class Realtime : public Method {
   HeaveFilter most_probable(const HeaveFilter* calm, const std::vector<HeaveStep>& steps);
   AttitudeSample rethink();
   void rethink_rise();
-  bool lost() const;
+  bool lost();
   void find_again();
   void forget_sea(bool calm);
   void tell_without_jump(HeaveFilter filter);
@@ -90,6 +90,7 @@ class Realtime : public Method {
   MeanDisturbance disturbance_;                  // since the last node
   MeanForce force_;
   Motion motion_;
+  int beyond_ = 0;  // nodes in a row with heave that its sea does not reach
   bool started_ = false, rethinks_ = true, due_ = false;
 };
 
