@@ -12,6 +12,7 @@ constexpr int kSettledChanges = 20;  // changes seen before a spike can be told 
 constexpr int kStep = 3;             // so many jumps in a row are a step, not a spike
 constexpr double kForgotten = 5;     // intervals after which the last sample says nothing of the next
 constexpr double kForget = 0.02;     // of the usual change, per sample
+constexpr double kSlowest_s = 0.3;   // of intervals: before theirs is known, a longer one is a gap
 constexpr int kNewRate = 10;         // so many gaps in a row are no gaps but a slower rate
 constexpr double kFar_s = 60;        // ahead; a bad time stamp less far silences for no longer
 constexpr std::int64_t kLatest_us = std::int64_t{1} << 62;  // so that no difference of times overflows
@@ -100,7 +101,7 @@ GuardVerdict SampleGuard::check(const ImuSample& s) {
     return verdict;
   }
   const double dt_s = started_ ? static_cast<double>(s.utime - last_utime_) * kMicrosecond : 0.0;
-  const bool gap = interval_s_ > 0 && dt_s > settings_.gap_ratio * interval_s_;
+  const bool gap = dt_s > (interval_s_ > 0 ? settings_.gap_ratio * interval_s_ : kSlowest_s);
   if (interval_s_ > 0 && dt_s > kForgotten * interval_s_) {
     jumps_ = 0;
   } else if (started_ && spike(s)) {

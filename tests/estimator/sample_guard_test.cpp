@@ -83,6 +83,9 @@ TEST_F(SampleGuardTest, LearnsTheIntervalWhateverTheFirstOneIs) {
       if (i > 0) s.utime += late_us;
       const GuardVerdict verdict = guard.check(s);
       ASSERT_TRUE(verdict.usable);
+      if (i == 1) {
+        EXPECT_EQ((verdict.flags & flag::kGap) != 0, late_us > 0);
+      }
       if (i > 1) gaps += (verdict.flags & flag::kGap) != 0;
     }
     EXPECT_EQ(gaps, 0) << late_us;
