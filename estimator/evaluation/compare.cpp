@@ -10,8 +10,6 @@
 namespace waverig::evaluation {
 namespace {
 
-constexpr double kCoverageFactor = 2;
-
 double mean_error_m(const CellResult& cell) {
   const HeightStatistics& s = cell.statistics;
   const double reference = std::isfinite(s.mean_true_height_m) ? s.mean_true_height_m : cell.height_m;

@@ -6,11 +6,7 @@
 #include "lcmtypes/flags.h"
 
 namespace waverig::evaluation {
-namespace {
-
-constexpr double kCoverageFactor = 2;  // NIST TN 1297
-
-}  // namespace
+namespace {}  // namespace
 
 void HeightAccumulator::KnownMean::add(double value) {
   if (!std::isfinite(value)) return;
@@ -76,14 +72,15 @@ HeightStatistics HeightAccumulator::statistics(double set_height_m, double bound
   if (frequency_records_ > 0)
     contribute("frequency", std::sqrt(frequency_variance_sum_) / static_cast<double>(frequency_records_),
                'B');
-  double variance = 0;
-  bool stated = false;
-  for (const Contribution& c : s.budget) {
-    variance += c.sigma_m * c.sigma_m;
-    stated = stated || c.type == 'B';
-  }
-  if (stated) s.expanded_uncertainty_m = kCoverageFactor * std::sqrt(variance);
+  if (std::any_of(s.budget.begin(), s.budget.end(), [](const Contribution& c) { return c.type == 'B'; }))
+    s.expanded_uncertainty_m = expanded_m(s.budget);
   return s;
+}
+
+double expanded_m(std::span<const Contribution> budget) {
+  double variance = 0;
+  for (const Contribution& c : budget) variance += c.sigma_m * c.sigma_m;
+  return kCoverageFactor * std::sqrt(variance);
 }
 
 double error_rate_percent(double mean_height_m, double set_height_m) {

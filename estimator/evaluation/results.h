@@ -15,8 +15,10 @@ namespace waverig::evaluation {
 // One single wave held against the truth.
 struct JudgedWave {
   estimator::Wave wave;
-  double true_height_m = estimator::kUnknown;   // crest to trough of the true heave over the same span
+  double true_height_m = estimator::kUnknown;  // crest to trough of the true heave over the same span
 };
+
+inline constexpr double kCoverageFactor = 2;  // of expanded uncertainties; NIST TN 1297
 
 // One contribution to the standard uncertainty of a mean height (GUM): name, value in metres, type A or B.
 struct Contribution {
@@ -29,13 +31,14 @@ struct Contribution {
 struct HeightStatistics {
   std::int64_t waves = 0;
   double mean_height_m = estimator::kUnknown;
-  double error_rate_percent = estimator::kUnknown;   // 100 |mean - set| / set
-  double std_m = estimator::kUnknown;                // over single waves
-  double rmse_m = estimator::kUnknown;               // single waves against their true heights
-  double mean_error_percent = estimator::kUnknown;   // signed, mean against true mean
+  double error_rate_percent = estimator::kUnknown;  // 100 |mean - set| / set
+  double std_m = estimator::kUnknown;               // over single waves
+  double rmse_m = estimator::kUnknown;              // single waves against their true heights
+  double mean_error_percent = estimator::kUnknown;  // signed, mean against true mean
   double mean_true_height_m = estimator::kUnknown;
   double expanded_uncertainty_m = estimator::kUnknown;  // k = 2, of the mean height
-  double bound_std_m = estimator::kUnknown;          // Cramer-Rao, REFERENCE section 3; unknown where noise is unknown
+  double bound_std_m =
+      estimator::kUnknown;  // Cramer-Rao, REFERENCE section 3; unknown where noise is unknown
   double mean_period_s = estimator::kUnknown;
   std::vector<Contribution> budget;
   std::int32_t flags = 0;
@@ -44,9 +47,10 @@ struct HeightStatistics {
 // A method's sea state held against the truth of the same span.
 struct JudgedSea {
   estimator::SeaState sea;
-  double true_hm0_m = estimator::kUnknown;    // 4 standard deviations of the true heave
-  double true_tm02_s = estimator::kUnknown;   // 2 pi times the ratio of the standard deviations of heave and rate
-  TrueDirection direction{};                  // where the method told one
+  double true_hm0_m = estimator::kUnknown;  // 4 standard deviations of the true heave
+  double true_tm02_s =
+      estimator::kUnknown;    // 2 pi times the ratio of the standard deviations of heave and rate
+  TrueDirection direction{};  // where the method told one
 
   double direction_error_rad() const {  // told minus true, in [-pi, pi]; unknown where either is
     return std::remainder(sea.mean_direction_rad - direction.mean_direction_rad, 360 * kDegree);
@@ -58,25 +62,29 @@ enum class Motion { kUnknown, kRegular, kSea };
 
 // One run, one method.
 struct RunResult {
-  std::string run;            // stem of runs/<run>.lcm
+  std::string run;  // stem of runs/<run>.lcm
   std::string method;
   int repeat = 0;
-  double period_s = 0;        // as set
-  double height_m = 0;        // as set
+  double period_s = 0;  // as set
+  double height_m = 0;  // as set
   Motion motion = Motion::kUnknown;
   HeightStatistics statistics;
-  std::vector<JudgedWave> waves;      // the steady ones
+  std::vector<JudgedWave> waves;  // the steady ones
   std::vector<JudgedSea> seas;
-  double heave_rmse_m = estimator::kUnknown;   // against the true heave over the steady part, mean removed
-  double heave_bound_m = estimator::kUnknown;  // the least that can be, of a sea of known spectrum (heave_bound.h)
-  std::int64_t excluded_waves = 0;    // in ramps or cut by the record's edge
-  double heave_coverage = estimator::kUnknown;  // part of the steady time with heave; where waves were counted in it
-  double heave_gain = estimator::kUnknown;     // estimated over true heave, least squares over the steady part
-  double heave_lag_s = estimator::kUnknown;    // positive: the estimate comes late
-  double heave_sigma_ratio = estimator::kUnknown;   // rms of error over stated sigma; 1: honest, above: too sure
-  double true_hm0_m = estimator::kUnknown;     // 4 standard deviations of the true heave over the steady part
-  double true_tm02_s = estimator::kUnknown;    // of the true heave and its rate
-  double noise_density_mps2_rthz = estimator::kUnknown;   // of the sensor's vertical acceleration, for the bound
+  double heave_rmse_m = estimator::kUnknown;  // against the true heave over the steady part, mean removed
+  double heave_bound_m =
+      estimator::kUnknown;          // the least that can be, of a sea of known spectrum (heave_bound.h)
+  std::int64_t excluded_waves = 0;  // in ramps or cut by the record's edge
+  double heave_coverage =
+      estimator::kUnknown;  // part of the steady time with heave; where waves were counted in it
+  double heave_gain = estimator::kUnknown;   // estimated over true heave, least squares over the steady part
+  double heave_lag_s = estimator::kUnknown;  // positive: the estimate comes late
+  double heave_sigma_ratio =
+      estimator::kUnknown;                   // rms of error over stated sigma; 1: honest, above: too sure
+  double true_hm0_m = estimator::kUnknown;   // 4 standard deviations of the true heave over the steady part
+  double true_tm02_s = estimator::kUnknown;  // of the true heave and its rate
+  double noise_density_mps2_rthz =
+      estimator::kUnknown;  // of the sensor's vertical acceleration, for the bound
 };
 
 // One setting and method, over its repeats: a row of results.csv.
@@ -86,9 +94,9 @@ struct CellResult {
   std::string method;
   Motion motion = Motion::kUnknown;
   HeightStatistics statistics;
-  double heave_rmse_m = estimator::kUnknown;      // root of the mean square over the repeats
-  double heave_bound_m = estimator::kUnknown;     // likewise
-  double true_hm0_m = estimator::kUnknown;        // this and the following: means over the repeats
+  double heave_rmse_m = estimator::kUnknown;   // root of the mean square over the repeats
+  double heave_bound_m = estimator::kUnknown;  // likewise
+  double true_hm0_m = estimator::kUnknown;     // this and the following: means over the repeats
   double heave_gain = estimator::kUnknown;
   double heave_lag_s = estimator::kUnknown;
   double heave_sigma_ratio = estimator::kUnknown;
@@ -100,14 +108,15 @@ struct CellResult {
 
 struct CampaignResults {
   std::string name;
-  std::string version;        // of waverig
-  std::string command;        // as given
-  std::string judged_version, judged_command;  // of a later waverig evaluate; empty where the campaign judged itself
+  std::string version;  // of waverig
+  std::string command;  // as given
+  std::string judged_version,
+      judged_command;  // of a later waverig evaluate; empty where the campaign judged itself
   std::uint64_t seed = 0;
   bool complete = false;
-  std::vector<CellResult> cells;   // by period, height, method
+  std::vector<CellResult> cells;  // by period, height, method
   std::vector<RunResult> runs;
-  std::string calibration_json;    // report of the campaign's own calibration, verbatim
+  std::string calibration_json;  // report of the campaign's own calibration, verbatim
 };
 
 }  // namespace waverig::evaluation

@@ -37,7 +37,8 @@ Summary summary_of(const std::string& method, std::span<const estimator::Wave> w
   accumulator.close_record();
   Summary s = summary_of(method, statistics_of(counted));
   const HeightStatistics heights = accumulator.statistics(estimator::kUnknown, estimator::kUnknown);
-  s.expanded_uncertainty_m = heights.expanded_uncertainty_m;
+  s.budget = heights.budget;
+  if (!s.budget.empty()) s.expanded_uncertainty_m = expanded_m(s.budget);
   s.flags |= heights.flags;
   return s;
 }
@@ -89,6 +90,7 @@ std::string to_json(const Summary& s) {
   put("tm02_s", s.tm02_s);
   put("tp_s", s.tp_s);
   put("expanded_uncertainty_m", s.expanded_uncertainty_m);
+  for (const Contribution& c : s.budget) json["uncertainty_budget_m"][c.name] = c.sigma_m;
   put("mean_direction_deg", s.mean_direction_deg);
   put("spread_deg", s.spread_deg);
   put("peak_direction_deg", s.peak_direction_deg);

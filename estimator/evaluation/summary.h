@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "estimator/evaluation/results.h"
 #include "estimator/evaluation/zero_crossing.h"
 #include "estimator/types.h"
 
@@ -23,12 +25,14 @@ struct Summary {
   double heave_rms_error_m = estimator::kUnknown;        // against a truth, where one was given
   double heave_rms_error_percent = estimator::kUnknown;  // of 4 standard deviations of that truth
   double heave_gain = estimator::kUnknown, heave_lag_s = estimator::kUnknown;
+  std::vector<Contribution> budget;  // of the mean height, k = 1
   std::int32_t flags = 0;
 };
 
 // Counted waves of a heave series.
 Summary summary_of(const std::string& method, const WaveStatistics& statistics);
-// Single waves as a method found them, with the expanded uncertainty (k = 2) of their mean height.
+// Single waves as a method found them, with the expanded uncertainty (k = 2) of their mean height and what it
+// is made of: of waves that state none, the scatter of a finite number of them alone, type A.
 Summary summary_of(const std::string& method, std::span<const estimator::Wave> waves);
 
 // Spectral sea state, and direction where it is known: of the longest block, where there are several.

@@ -309,6 +309,14 @@ TEST(Summary, HoldsTheAgreedKeysAndLeavesOutWhatIsUnknown) {
   EXPECT_NEAR(json.at("expanded_uncertainty_m").get<double>(), 0.02, 1e-12);
   EXPECT_FALSE(json.contains("hm0_m"));
   EXPECT_EQ(json.at("flags"), nlohmann::json::array({"saturation"}));
+  EXPECT_NEAR(json.at("uncertainty_budget_m").at("noise").get<double>(), 0.01, 1e-12);
+
+  for (estimator::Wave& wave : waves) wave.noise_sigma_m = estimator::kUnknown;
+  const auto unstated = nlohmann::json::parse(to_json(summary_of("theirs", waves)));
+  const double scatter_m = 0.01 * std::sqrt(5.0 / 3) / 2;   // of four heights a centimetre apart
+  EXPECT_EQ(unstated.at("uncertainty_budget_m").size(), 1u);
+  EXPECT_NEAR(unstated.at("uncertainty_budget_m").at("scatter").get<double>(), scatter_m, 1e-12);
+  EXPECT_NEAR(unstated.at("expanded_uncertainty_m").get<double>(), 2 * scatter_m, 1e-12);
 }
 
 TEST(Summary, TakesSeaStateAndDirectionFromTheLongestBlocksThatKnowThem) {
