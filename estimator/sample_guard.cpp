@@ -85,7 +85,7 @@ void SampleGuard::learn_interval(double dt_s, bool gap) {
 }
 
 GuardVerdict SampleGuard::check(const ImuSample& s) {
-  GuardVerdict verdict{.usable = false, .flags = s.flags, .dt_s = 0};
+  GuardVerdict verdict{.usable = false, .flags = s.flags, .dt_s = 0, .anew = false};
   const bool dated = s.utime > -kLatest_us && s.utime < kLatest_us;
   const bool ahead = dated && far_ahead(s.utime);
   if (!dated || !in_range(s) || (started_ && s.utime <= last_utime_)) {
@@ -116,6 +116,7 @@ GuardVerdict SampleGuard::check(const ImuSample& s) {
   if (started_) learn_interval(dt_s, gap);
   verdict.usable = true;
   verdict.dt_s = dt_s;
+  verdict.anew = !started_ || (gap && dt_s > longest_bridge_s(interval_s_));
   started_ = true;
   last_utime_ = s.utime;
   last_f_B_ = s.f_B;

@@ -31,10 +31,14 @@ struct SampleGuardSettings {
   double gap_ratio = 1.8;         // times the usual interval
 };
 
+// The longest gap over which a path or an attitude is carried on by what is seen on either side of it.
+inline double longest_bridge_s(double usual_interval_s) { return 0.3 + 2 * usual_interval_s; }
+
 struct GuardVerdict {
   bool usable = false;
   std::int32_t flags = 0;  // of the sample and of the guard
   double dt_s = 0;         // since the last usable sample; 0 for the first
+  bool anew = false;       // the first, or after a gap too long to be bridged
 };
 
 class SampleGuard {

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "estimator/sample_guard.h"
 #include "lcmtypes/flags.h"
 
 namespace waverig::estimator {
@@ -91,7 +92,8 @@ const AttitudeSample& AttitudeFilter::update(const ImuSample& sample) {
   const Vector3d w_B = sample.w_NB_B - state_.gyro_bias_B;
   const Vector3d g_N(0, 0, settings_.gravity_mps2);
   const bool gap = (sample.flags & flag::kGap) != 0;
-  if (!started_ || (gap && dt > settings_.longest_gap_s)) {
+  if (started_ && !gap) usual_interval_s_ = dt;
+  if (!started_ || (gap && dt > longest_bridge_s(usual_interval_s_))) {
     restart(sample);
     state_.a_N = state_.q_NB * sample.f_B + g_N;
   } else {

@@ -30,7 +30,6 @@ struct AttitudeSettings {
   double motion_m2s = 0.3;            // two-sided density of the horizontal path taken as white
   double start_tilt_sigma_rad = 0.1;  // of levelling by one sample of specific force
   double update_interval_s = 0.1;     // between two corrections
-  double longest_gap_s = 0.3;         // beyond it the attitude is levelled anew
 };
 
 struct AttitudeSample {
@@ -75,8 +74,8 @@ class AttitudeFilter {
   AttitudeFilter(const AttitudeSettings& settings, const Quaterniond& q_NB, const Vector3d& gyro_bias_B);
 
   // Samples in increasing utime, repeats and stragglers already dropped; gaps are welcome. flag::kSaturation
-  // and flag::kGap on a sample widen the uncertainty; after a gap beyond longest_gap_s the attitude is
-  // levelled anew. Never throws.
+  // and flag::kGap on a sample widen the uncertainty; after a gap that is too long to be bridged
+  // (sample_guard.h) the attitude is levelled anew. Never throws.
   const AttitudeSample& update(const ImuSample& sample);
 
   // The correction made by the last update(), if it made one.
@@ -93,7 +92,7 @@ class AttitudeFilter {
   AttitudeCorrection correction_;
   Vector3d previous_w_B_ = Vector3d::Zero();
   Eigen::Vector2d position_N_ = Eigen::Vector2d::Zero(), velocity_N_ = Eigen::Vector2d::Zero();
-  double since_correction_s_ = 0;
+  double since_correction_s_ = 0, usual_interval_s_ = 0;
   bool started_ = false, corrected_ = false, restarted_ = false, knows_attitude_ = false;
 };
 

@@ -15,8 +15,8 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabola
-constexpr double kLongestSkip_s = 60;  // a sea is forgotten after that
+constexpr double kLongestSkip_s = 60;  // after that no wave is remembered
+constexpr double kSeaLasts_s = 1800;   // after a longer gap it is another one
 constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
 constexpr int kMostNodesBetween = 8;  // two samples, where a lag is waited for
@@ -79,8 +79,7 @@ void Realtime::add(const ImuSample& raw, Output& output) {
   // 2. Integrate, and at the nodes tell drift from sea.
   if (!started_) {
     start_path(sample, attitude);
-  } else if (verdict.dt_s > kLongestGap_s + 2 * guard_.usual_interval_s()) {
-    sample.flags |= flag::kGap;
+  } else if (verdict.anew) {
     resume(sample, output);
     start_path(sample, attitude);
   } else {
@@ -134,14 +133,36 @@ void Realtime::start_path(const ImuSample& sample, const AttitudeSample& attitud
 void Realtime::resume(const ImuSample& sample, Output& output) {
   finish(output);  // no later node tells more of what is held
   counter_.gap();
-  const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
-  filter_.skip(static_cast<int>(std::ceil(std::min(missing_s, kLongestSkip_s) / kFineInterval_s)));
   settled_nodes_ = 0;
-  identifier_.gap();
-  rethinks_ = false;
+  jump_m_ = 0;
+  beyond_ = 0;
   calm_.reset();
   rise_.reset();
-  jump_m_ = 0;
+  const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
+  if (missing_s > kSeaLasts_s) {
+    begin_record();
+    return;
+  }
+  filter_.skip(static_cast<int>(std::ceil(std::min(missing_s, kLongestSkip_s) / kFineInterval_s)));
+  identifier_.gap();
+  end_rethinking();
+}
+
+// As if nothing had been seen: of a sea of long ago nothing is believed.
+void Realtime::begin_record() {
+  identifier_.restart();
+  filter_ = HeaveFilter(identifier_.model(), 0, 0);
+  first_.clear();
+  start_.reset();
+  samples_ = nodes_ = chosen_at_ = thought_at_ = 0;
+  old_enough_ = kOldEnough;
+  motion_ = {};
+  rethinks_ = true;
+}
+
+void Realtime::end_rethinking() {
+  rethinks_ = false;
+  first_ = {};
 }
 
 // Appends the node intervals that end with the sample.
@@ -198,9 +219,9 @@ void Realtime::filter(const HeaveStep& step) {
 
 bool Realtime::lost() {
   const double heave_m = std::abs(filter_.heave_m({}, 0));
-  const bool resting = rethinks_ || rise_ || !identifier_.has_spectrum() || filter_.rest_s() > 0;
+  const bool unknown = rethinks_ || rise_ || !identifier_.has_spectrum() || filter_.rest_s() > 0;
   const bool beyond = heave_m > kLost * std::sqrt(filter_.model().heave_variance_m2());
-  beyond_ = beyond && !resting ? beyond_ + 1 : 0;
+  beyond_ = beyond && !unknown ? beyond_ + 1 : 0;
   return beyond_ > kNoWave ||
          (beyond_ > 0 && heave_m > kLost * filter_.recent_mps2() / square(kSlowest_radps));
 }
@@ -219,7 +240,7 @@ void Realtime::forget_sea(bool calm) {
   calm_.reset();
   chosen_at_ = 0;
   identifier_.forget(calm);
-  rethinks_ = false;
+  end_rethinking();
 }
 
 void Realtime::remember(const HeaveStep& step) {
@@ -281,10 +302,8 @@ AttitudeSample Realtime::rethink() {
     tell_without_jump(most_probable(nullptr, steps));
   else
     filter_ = most_probable(nullptr, steps);
-  if (static_cast<double>(nodes_) * kFineInterval_s > kRethought_s || first_.size() > kMostRethought) {
-    rethinks_ = false;
-    first_ = {};
-  }
+  if (static_cast<double>(nodes_) * kFineInterval_s > kRethought_s || first_.size() > kMostRethought)
+    end_rethinking();
   return attitude.back();
 }
 

@@ -51,6 +51,8 @@ class Realtime : public Method {
   };
   void start_path(const ImuSample& sample, const AttitudeSample& attitude);
   void resume(const ImuSample& sample, Output& output);
+  void begin_record();
+  void end_rethinking();
   void follow(const ImuSample& sample, const AttitudeSample& attitude, std::vector<HeaveStep>& steps);
   void filter(const HeaveStep& step);
   void remember(const HeaveStep& step);

@@ -13,9 +13,8 @@
 namespace waverig::estimator {
 namespace {
 
-constexpr double kLongestGap_s = 0.3;  // shorter ones are bridged by the parabola
-constexpr int kOrder = 48;             // of the autoregression: 24 s
-constexpr int kBlock = 1024;           // fine nodes of a periodogram: 256 s
+constexpr int kOrder = 48;    // of the autoregression: 24 s
+constexpr int kBlock = 1024;  // fine nodes of a periodogram: 256 s
 
 // One piece without a gap, seen from the nodes.
 struct Piece {
@@ -107,12 +106,9 @@ void Record::add(const ImuSample& sample) {
     pending_flags_ |= verdict.flags & ~flag::kGap;
     return;
   }
-  if (samples_.empty() || verdict.dt_s > kLongestGap_s + 2 * guard_.usual_interval_s())
-    pieces_.push_back(samples_.size());
+  if (verdict.anew) pieces_.push_back(samples_.size());
   samples_.push_back(sample);
   samples_.back().flags = verdict.flags | pending_flags_;
-  if (!pieces_.empty() && pieces_.back() + 1 == samples_.size() && samples_.size() > 1)
-    samples_.back().flags |= flag::kGap;
   pending_flags_ = 0;
 }
 

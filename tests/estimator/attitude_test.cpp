@@ -75,8 +75,14 @@ TEST(AttitudeFilter, LevelsAnewAfterALongGapAndKeepsTheBias) {
   SeaRecord record = sea_record({.duration_s = 300}, 7);
   AttitudeFilter filter(settings());
   AttitudeSample last;
-  for (std::size_t i = 0; i < record.samples.size(); ++i)
-    if (i < 12000 || i > 16000) last = filter.update(record.samples[i]);
+  record.samples[16000].flags |= flag::kGap;
+  for (std::size_t i = 0; i < record.samples.size(); ++i) {
+    if (i < 12000 || i >= 16000) last = filter.update(record.samples[i]);
+    if (i == 16000) {  // no more is known than one sample tells
+      EXPECT_FALSE(last.settled);
+      EXPECT_LT(tilt_between(last.q_NB, record.q_NB[i]), 0.2);
+    }
+  }
   EXPECT_LT(tilt_between(last.q_NB, record.q_NB.back()), 0.4 * kDegree);
   EXPECT_TRUE(last.settled);
 }
