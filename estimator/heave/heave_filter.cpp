@@ -63,8 +63,14 @@ void HeaveFilter::set_model(const SeaModel& model) {
   usual_variance_m2_ = kNoVariance;
 }
 
-void HeaveFilter::begin_sea(const SeaModel& model) {
+double HeaveFilter::count_from_here() {
+  z_.array() -= path_m_;
+  return std::exchange(path_m_, 0.0);
+}
+
+void HeaveFilter::begin_sea(const SeaModel& model, double level_m) {
   set_model(model);
+  path_m_ += level_m;
   begin_from_rest();
   restlessness_ = kNewSea;
 }

@@ -39,7 +39,9 @@ class HeaveFilter {
   HeaveFilter(const SeaModel& model, double offset_sigma_mps2, double gyro_scale_sigma);
   // Keeps the drift; where the nodes lie otherwise from now on, the older heaves are forgotten.
   void set_model(const SeaModel& model);
-  void begin_sea(const SeaModel& model);  // the same, of a sea that just came up out of a calm
+  // The same, of a sea that just came up out of a calm, at the given level from its mean.
+  void begin_sea(const SeaModel& model, double level_m);
+  double count_from_here();  // shifts all heaves so that the newest is zero; returns what it was
 
   void step(const HeaveStep& step);
   // Node intervals without samples: the sea runs on by its model, path and speed are lost.

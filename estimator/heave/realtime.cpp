@@ -34,7 +34,10 @@ constexpr std::ptrdiff_t kOnset = 4;               // nodes; a rise is seen so m
 constexpr std::ptrdiff_t kRise = 80;               // nodes after it that are gone through again
 constexpr std::int64_t kMayJump = 120;             // nodes; later, what is told has been taken for waves
 constexpr double kSeaIsGone_s = 12;                // after a rest of that length
-constexpr double kJumpFades_s = 4;
+constexpr double kJumpFades_s = 4, kJumpFadesInCalm_s = 60;
+constexpr double kFarthestRest = 2;  // standard deviations of the sea, from its mean level
+constexpr int kStirred = 30;         // nodes; what comes up in a calm later is not what stirred in it
+constexpr double kOutgrown = 2, kCalm_mps2 = 0.1;
 constexpr double kChosenAgain = 1.5;  // times the nodes, while the sea is guessed
 constexpr double kGuessWeight = 3;    // periodograms of less than a minute tell little
 constexpr double kOffsetDoubt = 2;    // a sensor that is off is not to be taken for a swell
@@ -96,7 +99,7 @@ void Realtime::add(const ImuSample& raw, Output& output) {
     else
       filter_.set_model(identifier_.identify());
   }
-  jump_m_ *= std::exp(-verdict.dt_s / kJumpFades_s);
+  jump_m_ *= std::exp(-verdict.dt_s / (!rethinks_ && calm() ? kJumpFadesInCalm_s : kJumpFades_s));
   // 3. Answer, now or after the lag.
   Held held;
   held.sample.utime = sample.utime;
@@ -134,7 +137,7 @@ void Realtime::resume(const ImuSample& sample, Output& output) {
   finish(output);  // no later node tells more of what is held
   counter_.gap();
   settled_nodes_ = 0;
-  jump_m_ = 0;
+  jump_m_ = rest_level_m_ = 0;
   beyond_ = 0;
   calm_.reset();
   rise_.reset();
@@ -191,6 +194,7 @@ void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude,
 }
 
 void Realtime::filter(const HeaveStep& step) {
+  const bool was_gone = sea_is_gone();
   remember(step);
   filter_.step(step);
   jump_m_ -= filter_.correction_m();
@@ -199,18 +203,23 @@ void Realtime::filter(const HeaveStep& step) {
     find_again();
     return;
   }
-  if (!rethinks_ && (filter_.stirs() || filter_.rest_s() > kSeaIsGone_s)) {
-    rise_.reset();
+  if (!rethinks_ && sea_is_gone()) {
+    rest();
+    return;
+  }
+  if (!rethinks_ && (was_gone || filter_.stirs())) {
+    rise_ = std::exchange(calm_, std::nullopt);
     forget_sea(true);
     return;
   }
   // What comes up in a calm is new, however short the calm was.
   if (!filter_.surprised()) return;
-  if (identifier_.age() > old_enough_ || (rethinks_ && identifier_.calm())) {
+  const bool out_of_calm = identifier_.calm() && (rethinks_ || outgrows_what_stirred());
+  if (identifier_.age() > old_enough_ || out_of_calm) {
     // Surprised again at once: what was forgotten was too little to show a sea as slow as this.
     const bool at_once = identifier_.age() < kAtOnce * old_enough_;
     old_enough_ = at_once ? std::min(2 * old_enough_, kOldestEnough) : kOldEnough;
-    rise_ = identifier_.calm() ? std::move(calm_) : std::nullopt;
+    rise_ = std::exchange(calm_, std::nullopt);
     forget_sea(identifier_.calm());
   } else if (rethinks_) {
     due_ |= nodes_ > thought_at_ + thought_at_ / kRethoughtAgain;
@@ -233,11 +242,30 @@ void Realtime::find_again() {
   filter_ = HeaveFilter(identifier_.model(), offset_mps2, kScaleDoubt * settings_.sensor.gyro_scale_sigma);
   settled_nodes_ = 0;
   beyond_ = 0;
-  jump_m_ = 0;
+  jump_m_ = rest_level_m_ = 0;
+}
+
+// Before a board is moved it is touched: that was not yet the sea that rises now.
+bool Realtime::outgrows_what_stirred() const {
+  return rise_ && identifier_.age() > kStirred &&
+         filter_.recent_mps2() > std::max(kOutgrown * filter_.model().acceleration_mps2(), kCalm_mps2);
+}
+
+bool Realtime::sea_is_gone() const { return filter_.rest_s() > kSeaIsGone_s; }
+
+bool Realtime::calm() const { return identifier_.calm() || sea_is_gone(); }
+
+// What may come up is small beside the level of the rest, which lies anywhere in the sea that was: heave
+// counts from there, until it comes.
+void Realtime::rest() {
+  HeaveFilter resting = filter_;
+  rest_level_m_ += resting.count_from_here();
+  tell_without_jump(std::move(resting));
+  rise_.reset();
+  forget_sea(true);
 }
 
 void Realtime::forget_sea(bool calm) {
-  calm_.reset();
   chosen_at_ = 0;
   identifier_.forget(calm);
   end_rethinking();
@@ -245,7 +273,7 @@ void Realtime::forget_sea(bool calm) {
 
 void Realtime::remember(const HeaveStep& step) {
   if (rise_) rise_->steps.push_back(step);
-  if (!identifier_.calm())
+  if (!calm())
     calm_.reset();
   else if (!calm_ || std::ssize(calm_->steps) >= kOnset)
     calm_ = Since{filter_, {}};
@@ -267,7 +295,10 @@ HeaveFilter Realtime::most_probable(const HeaveFilter* calm, const std::vector<H
     HeaveFilter filter = calm ? *calm
                               : HeaveFilter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor),
                                             kScaleDoubt * settings_.sensor.gyro_scale_sigma);
-    if (calm) filter.begin_sea(sea);
+    if (calm) {
+      const bool as_before = std::abs(rest_level_m_) < kFarthestRest * std::sqrt(sea.heave_variance_m2());
+      filter.begin_sea(sea, as_before ? rest_level_m_ : 0.0);
+    }
     for (const HeaveStep& step : steps) filter.step(step);
     const double log_likelihood = filter.log_likelihood() - kLargeSwell * std::log(swell);
     if (!best || log_likelihood > most) {
@@ -311,7 +342,9 @@ AttitudeSample Realtime::rethink() {
 // drift.
 void Realtime::rethink_rise() {
   tell_without_jump(most_probable(&rise_->filter, rise_->steps));
-  if (std::ssize(rise_->steps) > kRise) rise_.reset();
+  if (std::ssize(rise_->steps) <= kRise) return;
+  rise_.reset();
+  if (!calm()) rest_level_m_ = 0;
 }
 
 // Who looks at the waves would take a jump for one of them.

@@ -61,6 +61,10 @@ class Realtime : public Method {
   void rethink_rise();
   bool lost();
   void find_again();
+  bool outgrows_what_stirred() const;
+  bool sea_is_gone() const;
+  bool calm() const;
+  void rest();
   void forget_sea(bool calm);
   void tell_without_jump(HeaveFilter filter);
   void locate(const AttitudeSample& attitude, Held& held) const;
@@ -86,8 +90,9 @@ class Realtime : public Method {
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
   static constexpr int kOldEnough = 120, kOldestEnough = 480;
-  int old_enough_ = kOldEnough;                  // fine nodes of one sea before another one is believed
-  double swell_ = 0;                             // as last chosen
+  int old_enough_ = kOldEnough;  // fine nodes of one sea before another one is believed
+  double rest_level_m_ = 0;      // of the calm's zero, from the mean level of the sea before it
+  double swell_ = 0;             // as last chosen
   std::int64_t chosen_at_ = 0, thought_at_ = 0;  // nodes, when it was, and when all was last gone through
   MeanDisturbance disturbance_;                  // since the last node
   MeanForce force_;

@@ -51,6 +51,70 @@ TEST(Realtime, GoesOnAfterARestInTheMiddleOfASea) {
   }
 }
 
+// As where a board is laid down on a table, or a rig is parked at its lowest point.
+TEST(Realtime, RemembersAtWhichLevelOfItsSeaItRested) {
+  struct Runs {
+    double tp_s, hm0_m, run_s, rest_s, level, rms;  // level: standard deviations
+  };
+  for (const Runs& runs : {Runs{4, 1, 30, 40, 1, 0.08}, {6, 1, 40, 60, 2, 0.2}, {9, 2, 60, 60, 1, 0.11}})
+    for (const double side : {-1, 1}) {
+      double squares_m2 = 0, n = 0;
+      const SeaCase sea{.tp_s = runs.tp_s, .hm0_m = runs.hm0_m, .duration_s = runs.run_s};
+      for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const auto [record, begins_s] =
+            runs_and_rests(sea, sea, runs.rest_s, 4, seed, side * runs.level * runs.hm0_m / 4);
+        const Collector out = run_realtime(record.samples);
+        for (std::size_t run = 1; run < begins_s.size(); ++run) {
+          const auto begin = static_cast<std::size_t>(100 * begins_s[run]);
+          const auto length = static_cast<std::size_t>(100 * runs.run_s);
+          double sum_m = 0, sum_m2 = 0;  // about their mean: which level is called zero is not the question
+          for (std::size_t i = begin; i < begin + length; ++i) {
+            const double error_m = out.heaves[i].heave_m - record.heave_m[i];
+            sum_m += error_m;
+            sum_m2 += error_m * error_m;
+          }
+          squares_m2 += sum_m2 - sum_m * sum_m / static_cast<double>(length);
+          n += static_cast<double>(length);
+        }
+      }
+      EXPECT_LT(std::sqrt(squares_m2 / n), runs.rms * runs.hm0_m) << runs.tp_s << " s, side " << side;
+    }
+}
+
+// Before it is moved a board is touched.
+TEST(Realtime, IsNotMisledByWhatStirsBeforeTheMotion) {
+  struct Stir {
+    double lasts_s, pause_s;
+  };
+  for (const Stir& stir : {Stir{8, 1}, {20, 1}, {20, 5}}) {
+    double squares_m2 = 0, n = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      const auto [record, begins_s] =
+          runs_and_rests({.tp_s = 4, .hm0_m = 0.03, .duration_s = stir.lasts_s},
+                         {.tp_s = 2, .hm0_m = 1, .duration_s = 60}, stir.pause_s, 2, seed);
+      const Collector out = run_realtime(record.samples);
+      for (auto i = static_cast<std::size_t>(100 * begins_s[1]); i < out.heaves.size(); ++i, ++n)
+        squares_m2 += square(out.heaves[i].heave_m - record.heave_m[i]);
+    }
+    EXPECT_LT(std::sqrt(squares_m2 / n), 0.028) << stir.lasts_s << " s, " << stir.pause_s << " s before";
+  }
+}
+
+// Of waves of a few centimetres in a tank.
+TEST(Realtime, ReadsRipplesBetweenRests) {
+  for (const auto& [tp_s, rms] : {std::pair{1.0, 0.06}, {1.6, 0.07}, {2.6, 0.12}}) {
+    const SeaCase ripples{.tp_s = tp_s, .hm0_m = 0.04, .duration_s = 45};
+    double squares_m2 = 0, n = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const auto [record, begins_s] = runs_and_rests(ripples, ripples, 10, 4, seed);
+      const Collector out = run_realtime(record.samples);
+      for (auto i = static_cast<std::size_t>(100 * begins_s[1]); i < out.heaves.size(); ++i, ++n)
+        squares_m2 += square(out.heaves[i].heave_m - record.heave_m[i]);
+    }
+    EXPECT_LT(std::sqrt(squares_m2 / n), rms * ripples.hm0_m) << tp_s << " s";
+  }
+}
+
 // Beside the sea that was, what is left of it moves the body no more than a rest does.
 TEST(Realtime, TakesNoLowSeaForARestOfTheOneBefore) {
   struct Seas {

@@ -133,12 +133,14 @@ inline SeaRecord changing_record(const SeaCase& first, const SeaCase& c, double 
 }
 
 // The same, with a rest between the runs: each lasts c.duration_s and begins and ends within a second, runs of the first
-// sea and of the second taking turns. Where each run begins is in begins_s.
+// sea and of the second taking turns. The rests are level_m below the mean level of the runs. Where each run begins is in
+// begins_s.
 struct RunsAndRests {
   SeaRecord record;
   std::vector<double> begins_s;
 };
-inline RunsAndRests runs_and_rests(const SeaCase& first, SeaCase c, double rest_s, int runs, std::uint64_t seed) {
+inline RunsAndRests runs_and_rests(const SeaCase& first, SeaCase c, double rest_s, int runs, std::uint64_t seed,
+                                   double level_m = 0) {
   constexpr double kRamp_s = 1, kFirst_s = 21;
   motion::FloatSettings level;
   level.slope_following = 0;
@@ -158,6 +160,7 @@ inline RunsAndRests runs_and_rests(const SeaCase& first, SeaCase c, double rest_
     const Ramp up = ramp(t_s, *(next - 1), kRamp_s), down = ramp(t_s, stops_s, kRamp_s);
     const Ramp r{up.w - down.w, up.dw - down.dw, up.ddw - down.ddw};
     BodyMotion m = ((next - begins_s.begin()) % 2 == 1 ? odd : even).at(utime);
+    m.position_N.z() -= level_m;
     m.acceleration_N = r.w * m.acceleration_N + 2 * r.dw * m.velocity_N + r.ddw * m.position_N;
     m.velocity_N = r.w * m.velocity_N + r.dw * m.position_N;
     m.position_N *= r.w;
