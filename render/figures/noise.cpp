@@ -18,9 +18,10 @@ namespace {
 
 constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
 
-double median_interval_s(const std::vector<estimator::ImuSample>& imu) {
+template <class Sample>
+double median_interval_s(const std::vector<Sample>& samples) {
   std::vector<std::int64_t> steps;
-  for (std::size_t i = 1; i < imu.size(); ++i) steps.push_back(imu[i].utime - imu[i - 1].utime);
+  for (std::size_t i = 1; i < samples.size(); ++i) steps.push_back(samples[i].utime - samples[i - 1].utime);
   if (steps.empty()) return 0;
   std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
   return static_cast<double>(steps[steps.size() / 2]) * kMicrosecond;
@@ -120,6 +121,34 @@ double least_density(const std::vector<double>& truth) {
   return least != truth.end() && *least < kShown * *most ? kShown * *most : kAuto;
 }
 
+// The longest part of the samples with all values known: one unknown value would make a whole transform
+// unknown. Where no more than `bridged` are missing, as at the seams between the waves of harmonic, a
+// straight line stands for them.
+template <class Sample, class Value>
+std::vector<double> longest_known(const std::vector<Sample>& samples, std::size_t bridged, Value value) {
+  std::vector<double> longest, part;
+  std::size_t missing = 0;
+  for (const Sample& sample : samples) {
+    const double v = value(sample);
+    if (!std::isfinite(v)) {
+      ++missing;
+      continue;
+    }
+    if (missing > bridged) {
+      if (part.size() > longest.size()) longest.swap(part);
+      part.clear();
+    }
+    if (!part.empty()) {
+      const double before = part.back();
+      for (std::size_t k = 1; k <= missing; ++k)
+        part.push_back(std::lerp(before, v, static_cast<double>(k) / static_cast<double>(missing + 1)));
+    }
+    missing = 0;
+    part.push_back(v);
+  }
+  return part.size() > longest.size() ? part : longest;
+}
+
 }  // namespace
 
 RestRecords rest_of(const evaluation::RunRecord& run) {
@@ -210,24 +239,24 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
                 .subtitle = setting_text(run) + "; Hann blocks of ten periods, means over 1/12 octave",
                 .columns = 2,
                 .height_mm = 100};
-  const auto steady = [&](std::int64_t utime) {
-    return utime >= run.steady_begin_utime && utime < run.steady_end_utime;
-  };
-  const double interval_s = median_interval_s(run.imu);
-  const auto block_of = [&](double dt) {
-    return dt > 0 ? 2 * static_cast<std::size_t>(5 * run.period_s / dt) : 0;
+  const auto spectrum_of = [&](const auto& samples, auto value) {
+    constexpr double kBridged = 0.02;  // of a period: a line is within 0.2 % of its amplitude there
+    const double interval_s = median_interval_s(samples);
+    const auto in_periods = [&](double n) {
+      return interval_s > 0 ? static_cast<std::size_t>(n * run.period_s / interval_s) : 0;
+    };
+    const std::vector<double> values = longest_known(samples, in_periods(kBridged), [&](const auto& sample) {
+      const bool steady = sample.utime >= run.steady_begin_utime && sample.utime < run.steady_end_utime;
+      return steady ? value(sample) : kAuto;
+    });
+    return values.size() < 16 ? Spectrum{} : banded(welch(values, interval_s, 2 * in_periods(5)));
   };
   Panel force{.title = "(a) Specific force",
               .x = {.label = "Frequency", .unit = "Hz", .scale = Scale::kLog},
               .y = {.label = "Density", .unit = "m/s\u00B2/\u221AHz", .scale = Scale::kLog}};
-  std::array<std::vector<double>, 3> axes;
-  for (const estimator::ImuSample& sample : run.imu) {
-    if (!steady(sample.utime)) continue;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      axes[axis].push_back(sample.f_B[static_cast<Eigen::Index>(axis)]);
-  }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Spectrum s = banded(welch(axes[axis], interval_s, block_of(interval_s)));
+    const Spectrum s =
+        spectrum_of(run.imu, [&](const auto& sample) { return sample.f_B[static_cast<Eigen::Index>(axis)]; });
     force.marks.emplace_back(Line{.x = s.frequency_hz,
                                   .y = s.density_rthz,
                                   .name = fmt::format("f {}", kAxisNames[axis]),
@@ -241,31 +270,26 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
               .x = force.x,
               .y = {.label = "Density", .unit = "m/\u221AHz", .scale = Scale::kLog}};
   const auto add = [&](const std::string& name, int color, const auto& samples, Dash dash) {
-    std::vector<double> values;
-    std::int64_t first = 0, last = 0;
-    for (const auto& sample : samples) {
-      if (!steady(sample.utime)) continue;
-      if (values.empty()) first = sample.utime;
-      last = sample.utime;
-      values.push_back(sample.heave_m);
-    }
-    if (values.size() < 16) return Spectrum{};
-    const double dt =
-        static_cast<double>(last - first) * kMicrosecond / static_cast<double>(values.size() - 1);
-    const Spectrum s = banded(welch(values, dt, block_of(dt)));
+    const Spectrum s = spectrum_of(samples, [](const auto& sample) { return sample.heave_m; });
     heave.marks.emplace_back(Line{.x = s.frequency_hz,
                                   .y = s.density_rthz,
                                   .name = name,
                                   .look = {.color = color, .width_pt = 0.9, .dash = dash}});
-    return s;
+    return s.density_rthz;
   };
   std::vector<std::string> methods;
   for (const auto& [method, samples] : run.heave) methods.push_back(method);
   int color = 0;
-  for (const std::string& method : in_order(methods))
-    add(method, color++, run.heave.at(method), Dash::kSolid);
+  std::string without;
+  for (const std::string& method : in_order(methods)) {
+    if (add(method, color++, run.heave.at(method), Dash::kSolid).empty())
+      without += (without.empty() ? "" : ", ") + method;
+  }
+  if (!without.empty())
+    heave.marks.emplace_back(
+        Note{.x = 0.02, .y = 0.97, .text = "no steady heave: " + without, .color = kFaintInk});
   draw_same_once(heave.marks);
-  heave.y.low = least_density(add("truth", kInk, run.truth, Dash::kDashed).density_rthz);
+  heave.y.low = least_density(add("truth", kInk, run.truth, Dash::kDashed));
   force.legend = heave.legend = Legend::kAbove;
   figure.panels = {std::move(force), std::move(heave)};
   return figure;

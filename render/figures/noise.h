@@ -31,7 +31,8 @@ void append(RestRecords& to, RestRecords&& from);
 Figure allan_figure(const RestRecords& rest);
 
 // One-sided amplitude densities over the steady part: specific force on each
-// axis with the noise floor, and the heave of each method beside the truth.
+// axis with the noise floor, and the heave of each method beside the truth, as
+// far as it is known without a break.
 // noise_density: of the vertical acceleration, NaN where unknown.
 Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz);
 

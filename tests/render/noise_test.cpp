@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +52,33 @@ TEST(Rest, EndsAtAGap) {
   run.imu.erase(run.imu.begin() + 400, run.imu.begin() + 420);
   const RestRecords rest = rest_of(run);
   EXPECT_EQ(rest.specific_force_mps2.at(0).axes[0].size(), 400U);
+}
+
+// harmonic tells no heave before its first wave, after its last, and at seams between two.
+TEST(Spectra, AreOfTheHeaveAsFarAsItIsKnown) {
+  evaluation::RunRecord run = test::example_run(12, 1.0, 240);
+  const auto line_of = [&](const std::string& name) {
+    const Figure figure = spectra_figure(run, kAuto);
+    for (const Mark& mark : figure.panels.at(1).marks)
+      if (const auto* line = std::get_if<Line>(&mark); line != nullptr && line->name == name) return *line;
+    return Line{};
+  };
+  auto& heave = run.heave.at("harmonic");
+  for (auto& sample : heave)
+    if (sample.utime < run.steady_begin_utime + 7'000'000 || sample.utime > run.steady_end_utime - 3'000'000)
+      sample.heave_m = estimator::kUnknown;
+  heave[heave.size() / 2].heave_m = estimator::kUnknown;
+  const Line told = line_of("harmonic"), truth = line_of("truth");
+  ASSERT_FALSE(told.y.empty());
+  EXPECT_NEAR(*std::ranges::max_element(told.y), *std::ranges::max_element(truth.y), 0.02);
+  for (const double density : told.y) EXPECT_TRUE(std::isfinite(density));
+  // Where nothing is known of the steady part, the figure says so.
+  for (auto& sample : heave) sample.heave_m = estimator::kUnknown;
+  std::string notes;
+  const Figure figure = spectra_figure(run, kAuto);
+  for (const Mark& mark : figure.panels.at(1).marks)
+    if (const auto* note = std::get_if<Note>(&mark)) notes += note->text;
+  EXPECT_EQ(notes, "no steady heave: harmonic");
 }
 
 }  // namespace
