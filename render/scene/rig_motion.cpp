@@ -101,7 +101,12 @@ void RigMotion::find_azimuth() {
     lowest = std::min(lowest, s.heave_m);
   }
   if (north != 0 || east != 0) azimuth_rad_ = std::atan2(east, north);
-  radius_m_ = run_.height_m > 0 ? 0.5 * run_.height_m : std::max(0.05, 0.5 * (highest - lowest));
+  // The arm is as long as it was set; no length is set of a sea, whose highest waves go far beyond half of
+  // Hm0.
+  if (on_sea_)
+    radius_m_ = std::max({0.05, highest, -lowest});
+  else
+    radius_m_ = run_.height_m > 0 ? 0.5 * run_.height_m : std::max(0.05, 0.5 * (highest - lowest));
 }
 
 double RigMotion::begin_s() const {

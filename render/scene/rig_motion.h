@@ -28,9 +28,9 @@ class RigMotion {
   const std::string& method() const { return method_; }  // empty where no estimate was recorded
   const evaluation::RunRecord& run() const { return run_; }
   double heave_offset_m() const { return mean_heave_m_; }  // of the estimate from the truth: it is taken off
-  double radius_m() const { return radius_m_; }
-  bool on_sea() const { return on_sea_; }  // a buoy on a sea instead of the arm's gondola
-  double begin_s() const;                  // of the steady part, or of the record where nothing is steady
+  double radius_m() const { return radius_m_; }            // of the arm; on a sea the largest heave
+  bool on_sea() const { return on_sea_; }                  // a buoy on a sea instead of the arm's gondola
+  double begin_s() const;  // of the steady part, or of the record where nothing is steady
   double end_s() const;
   double crest_near_s(double time_s) const;  // highest within half a period
 

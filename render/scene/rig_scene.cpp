@@ -81,10 +81,11 @@ struct Eye {
   Vector3d eye, target;
 };
 
-Eye eye_of(const SceneSettings& s, double radius_m) {
-  const double reach = radius_m + 0.45;
-  const Vector3d target(0, 0, -0.32 * reach);
-  const double distance = 3.6 * reach;
+// The rig stands below its arm; a buoy's mast stands above the highest crest.
+Eye eye_of(const SceneSettings& s, const RigMotion& motion) {
+  const double reach = motion.radius_m() + 0.45;
+  const Vector3d target(0, 0, (motion.on_sea() ? 0.05 : -0.32) * reach);
+  const double distance = (motion.on_sea() ? 4.1 : 3.6) * reach;
   const double ch = std::cos(s.view_height_rad);
   return {target + distance * Vector3d(ch * std::sin(s.view_azimuth_rad), -ch * std::cos(s.view_azimuth_rad),
                                        std::sin(s.view_height_rad)),
@@ -152,11 +153,12 @@ void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const Re
     large_.reset();
     large_ = std::make_unique<RenderTarget>(large_width, large_height, true);
   }
-  const Eye eye = eye_of(settings_, motion.radius_m());
+  const Eye eye = eye_of(settings_, motion);
   const double aspect = static_cast<double>(width) / height;
   // The circle of the arm fits into the narrower side.
   const double fov = 2 * std::atan(std::tan(0.5 * 40 * std::numbers::pi / 180) * std::max(1.0, 1.0 / aspect));
-  project_ = perspective(fov, aspect, 0.1, 60) * look_at(eye.eye, eye.target);
+  const double distance = (eye.eye - eye.target).norm();
+  project_ = perspective(fov, aspect, 0.1, std::max(60.0, 3 * distance)) * look_at(eye.eye, eye.target);
   parts_.build(motion, instant);
 
   const Color sky = settings_.theme == Theme::kDark ? rgb(0x14181D) : rgb(0xF3F6F9);
@@ -175,7 +177,6 @@ void RigScene::draw(const RigMotion& motion, const RigInstant& instant, const Re
   const Eigen::Vector3f eye_f = eye.eye.cast<float>(), lamp = SceneParts::towards_lamp().cast<float>();
   glUniform3fv(glGetUniformLocation(buffers_->program, "eye"), 1, eye_f.data());
   glUniform3fv(glGetUniformLocation(buffers_->program, "lamp"), 1, lamp.data());
-  const double distance = (eye.eye - eye.target).norm();
   glUniform4f(glGetUniformLocation(buffers_->program, "haze"), sky.r, sky.g, sky.b,
               static_cast<float>(1.25 * distance));
   glDisable(GL_BLEND);
@@ -245,8 +246,9 @@ void RigScene::draw_labels(const RigMotion& motion, const RigInstant& at, const 
     painter.text({area.left + text_px, area.top + text_px}, fmt::format("t = {:.1f} s", at.time_s),
                  {.size_px = text_px, .color = colors.ink, .v = VAlign::kTop, .bold = true});
     painter.text({area.right - text_px, area.top + text_px},
-                 fmt::format("{:g} s, {:g} cm, repeat {}", motion.run().period_s, 100 * motion.run().height_m,
-                             motion.run().repeat + 1),
+                 fmt::format(fmt::runtime(motion.on_sea() ? "Tp {:g} s, Hm0 {:g} cm, repeat {}"
+                                                          : "{:g} s, {:g} cm, repeat {}"),
+                             motion.run().period_s, 100 * motion.run().height_m, motion.run().repeat + 1),
                  {.size_px = text_px, .color = colors.faint_ink, .h = HAlign::kRight, .v = VAlign::kTop});
   });
 }

@@ -38,7 +38,8 @@ void SceneParts::build(const RigMotion& motion, const RigInstant& at) {
     build_rig(motion, at);
 }
 
-// The floor, tiled by half metres, and what stands on it keeps from the lamp.
+// The floor, tiled by half metres, larger where those would be a haze, and what stands on it keeps from the
+// lamp.
 void SceneParts::add_floor(double reach, double floor_z) {
   const bool dark = theme_ == Theme::kDark;
   const Color floor = dark ? rgb(0x39424D) : rgb(0xDDE2E7),
@@ -47,11 +48,12 @@ void SceneParts::add_floor(double reach, double floor_z) {
   Isometry3d ground = Isometry3d::Identity();
   ground.translation() = Vector3d(0, 0, floor_z - 0.01);
   solid.add_box(ground, {16 * reach, 16 * reach, 0.02}, floor);
-  for (double at_m = -8 * reach; at_m < 8 * reach; at_m += 0.5) {
+  const double tile_m = 0.5 * std::ceil(reach / 2), joint_m = 0.016 * tile_m;
+  for (double at_m = -8 * reach; at_m < 8 * reach; at_m += tile_m) {
     ground.translation() = Vector3d(at_m, 0, floor_z);
-    solid.add_box(ground, {0.008, 16 * reach, 0.002}, joint);
+    solid.add_box(ground, {joint_m, 16 * reach, 0.002}, joint);
     ground.translation() = Vector3d(0, at_m, floor_z);
-    solid.add_box(ground, {16 * reach, 0.008, 0.002}, joint);
+    solid.add_box(ground, {16 * reach, joint_m, 0.002}, joint);
   }
   solid.add_shadow(things, towards_lamp(), floor_z + 0.004, mixed(floor, rgb(0x000000), 0.28F));
 }
@@ -70,7 +72,7 @@ void SceneParts::add_water(const std::vector<Vector3d>& surface, std::size_t col
 // The water passes through the buoy: beside it stands what came by before and what comes by after, a period
 // as long as a wave of the rig's.
 void SceneParts::build_buoy(const RigMotion& motion, const RigInstant& at) {
-  const double r = motion.radius_m(), reach = r + 0.45, floor_z = -(2.2 * r + 0.75), size = 0.16 * reach;
+  const double r = motion.radius_m(), reach = r + 0.45, floor_z = -(1.2 * r + 0.75), size = 0.16 * reach;
   const auto add_hull = [&](Mesh& mesh, const Isometry3d& pose, double grown, Color hull, Color mast) {
     const auto place = [&](double up) { return Vector3d(pose * Vector3d(0, 0, up * size)); };
     mesh.add_rod(place(-0.7), place(0.7), 1.1 * grown * size, hull);
@@ -110,8 +112,7 @@ void SceneParts::build_rig(const RigMotion& motion, const RigInstant& at) {
   for (const double y : {depth_y, depth_y + 0.28}) {
     for (const double side : {-1.0, 1.0})
       solid.add_rod({side * 0.62 * (r + 0.4), y, floor_z}, {0, y, 0}, 0.03, frame);
-    solid.add_rod({-0.34 * (r + 0.4), y, 0.55 * floor_z}, {0.34 * (r + 0.4), y, 0.55 * floor_z}, 0.02,
-                   frame);
+    solid.add_rod({-0.34 * (r + 0.4), y, 0.55 * floor_z}, {0.34 * (r + 0.4), y, 0.55 * floor_z}, 0.02, frame);
   }
   solid.add_rod({0, -0.06, 0}, {0, depth_y + 0.34, 0}, 0.035, steel);
   Isometry3d motor = Isometry3d::Identity();
@@ -150,7 +151,7 @@ void SceneParts::build_rig(const RigMotion& motion, const RigInstant& at) {
     const Vector3d shift(0, 0, at.estimated_heave_m - at.sensor_m.z());
     const Isometry3d believed = gondola_pose(pivot + shift, at.estimated_q_SB);
     clear.add_box(in_gondola(believed, body), {kGondolaWidth * 1.08, 0.175, kGondolaHeight * 1.08},
-                   with_alpha(palette(theme_, 1), 0.30F));
+                  with_alpha(palette(theme_, 1), 0.30F));
   }
 
   // 5. The floor.

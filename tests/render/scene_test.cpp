@@ -5,6 +5,7 @@ extern "C" {
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lcmtypes/error.h"
@@ -106,6 +107,33 @@ TEST(RigScene, ShowsABuoyInTheWaterWhereThereIsNoArm) {
     if (motion.at(t).sensor_m.z() < motion.at(lowest_s).sensor_m.z()) lowest_s = t;
   }
   EXPECT_LT(row_of(highest_s) + 20, row_of(lowest_s));
+}
+
+// Single waves are higher than Hm0: the highest still has the buoy, its mast and its scale in the picture.
+TEST(RigScene, KeepsTheBuoyInThePictureOnTheHighestWave) {
+  evaluation::RunRecord sea = test::example_sea_run();
+  sea.height_m = 4;
+  const double grown = 2.6 / 0.5;
+  for (auto& sample : sea.truth) sample.heave_m *= grown, sample.north_m *= grown;
+  for (auto& [method, samples] : sea.heave)
+    for (auto& sample : samples) sample.heave_m *= grown;
+  const RigMotion motion(sea, "");
+  const double crest_s = motion.crest_near_s(70);
+  ASSERT_NEAR(motion.at(crest_s).sensor_m.z(), 2.6, 0.01);
+  Canvas canvas;
+  FilmFrames frames(canvas, motion, {.width_px = 640, .height_px = 360, .theme = Theme::kPrint});
+  const Image& image = frames.at(crest_s);
+  // The hull between the legend's and the scale's pieces of its colour, and free sky above it.
+  int first = image.height_px, last = 0;
+  for (int y = 0; y < image.height_px; ++y)
+    for (int x = image.width_px * 15 / 100; x < image.width_px * 42 / 100; ++x) {
+      const Color p = test::pixel(image, x, y);
+      if (!(p.r > 0.35F && p.r > 1.1F * p.g && p.g > 1.5F * p.b)) continue;
+      first = std::min(first, y);
+      last = std::max(last, y);
+    }
+  ASSERT_LT(first, last) << "no buoy";
+  EXPECT_GT(first, 2 * (last - first)) << "the mast is 1.6 times as high as the hull";
 }
 
 TEST(RigScene, IsBitIdenticalOnAnotherCanvas) {
