@@ -106,7 +106,8 @@ Ticks ticks_of(const Axis& axis, const Mapping& mapping, float length_px, float 
     float widest = size_px;
     if (along)
       for (const Tick& t : ticks.major)
-        widest = std::max(widest, fonts.width_px(t.label, size_px) + 1.2F * size_px);
+        widest =
+            std::max(widest, fonts.width_px(t.label.substr(0, t.label.find('\n')), size_px) + 1.2F * size_px);
     if (most <= 2 || widest * static_cast<float>(ticks.major.size()) <= length_px * 1.05F) break;
   }
   if (axis.whole_numbers) {

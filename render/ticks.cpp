@@ -184,11 +184,14 @@ Ticks time_ticks(double low, double high, int most) {
   const auto utc = [](double seconds) {
     return fmt::gmtime(static_cast<std::time_t>(std::floor(seconds + 1e-7)));
   };
+  // The axis names the day that it begins on: where another comes, its midnight names it.
+  const bool days = step < kDay && high > (std::floor(low / kDay) + 1) * kDay;
   for_each_multiple(low, high, step, [&](double v) {
     std::string label = step >= kDay      ? fmt::format("{:%m-%d}", utc(v))
                         : step >= kMinute ? fmt::format("{:%H:%M}", utc(v))
                                           : fmt::format("{:%H:%M:%S}", utc(v));
     if (decimals > 0) label += fmt::format("{:.{}f}", v - std::floor(v + 1e-7), decimals).substr(1);
+    if (days && std::abs(std::remainder(v, kDay)) < 1e-6) label += fmt::format("\n{:%m-%d}", utc(v));
     ticks.major.push_back({v, std::move(label)});
   });
   ticks.suffix = step >= kDay ? fmt::format("{:%Y} UTC", utc(low)) : fmt::format("{:%Y-%m-%d} UTC", utc(low));

@@ -105,6 +105,15 @@ TEST(TimeTicks, StandOnRoundTimesOfDay) {
   EXPECT_EQ(fine.major[1].label, "00:00:00.1");
 }
 
+// The axis label names the first day alone.
+TEST(TimeTicks, NameEachFurtherDayAtItsMidnight) {
+  const double noon = 1120176000 + 43200;  // 2005-07-01 12:00 UTC
+  const Ticks two_days = time_ticks(noon, noon + 129600, 8);
+  EXPECT_EQ(two_days.suffix, "2005-07-01 UTC");
+  EXPECT_EQ(labels(two_days), (std::vector<std::string>{"12:00", "18:00", "00:00\n07-02", "06:00", "12:00", "18:00",
+                                                        "00:00\n07-03"}));
+}
+
 TEST(NiceStep, IsTheSmallestThatFits) {
   EXPECT_DOUBLE_EQ(nice_step(10, 5), 2);
   EXPECT_DOUBLE_EQ(nice_step(11, 5), 5);
