@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
+#include <utility>
 
 #include "render/figures/accuracy.h"
 #include "render/figures/methods.h"
@@ -43,16 +45,29 @@ double phase_deg(const RunResult& run) {
   return follows(run) ? -360 * run.heave_lag_s / run.period_s : kAuto;
 }
 
+// What the points and bars are; of a period with a single run there is no bar to be explained.
+std::string subtitle_of(const CampaignResults& results, bool heights_differ) {
+  std::map<std::pair<double, std::string>, int> runs;  // of a period and method
+  int most = 0;
+  for (const RunResult& run : results.runs) most = std::max(most, ++runs[{run.period_s, run.method}]);
+  if (most < 2) return "a single run of each period: its scatter is unknown";
+  return std::string("mean over the runs of a period; bars: standard deviation between those runs") +
+         (heights_differ ? ", which differ in height" : "");
+}
+
 }  // namespace
 
 Figure frequency_response_figure(const CampaignResults& results) {
+  const std::vector<Setting> settings = settings_of(results);
+  const Grid grid(settings);
   Figure figure{.title = "Frequency response",
-                .subtitle =
-                    "mean over the runs of a period; bars: standard deviation between those runs, which "
-                    "differ in height",
+                .subtitle = subtitle_of(results, settings.size() > grid.periods_s.size()),
                 .share_x = true,
                 .height_mm = 120};
-  const Axis period{.label = "Wave period", .unit = "s", .padding = 0.08};
+  Axis period{.label = are_seas(results) ? "Set peak period" : "Wave period", .unit = "s", .padding = 0.08};
+  // A single period has no neighbours to be drawn to scale with.
+  const bool single = grid.periods_s.size() == 1;
+  if (single) period.categories = {fmt::format("{:g}", grid.periods_s.front())};
   Panel gain{.title = "(a) Gain: estimated over true wave height",
              .x = period,
              .y = {.label = "Gain"},
@@ -66,12 +81,12 @@ Figure frequency_response_figure(const CampaignResults& results) {
   phase.marks.emplace_back(
       Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kDashed}});
   const std::vector<std::string> methods = methods_of(results);
-  const auto add = [](Panel& panel, const std::map<double, Spread>& by_period, const std::string& name,
-                      int color) {
+  const auto add = [single](Panel& panel, const std::map<double, Spread>& by_period, const std::string& name,
+                            int color) {
     Line line{.name = name, .look = {.color = color, .marker = Marker::kCircle, .marker_pt = 4}};
     ErrorBars bars{.look = {.color = color, .width_pt = 0.8}};
     for (const auto& [period_s, spread] : by_period) {
-      line.x.push_back(period_s);
+      line.x.push_back(single ? 0 : period_s);
       line.y.push_back(spread.mean());  // unknown where no run tells it: the line breaks
       bars.minus.push_back(spread.deviation());
       bars.plus.push_back(spread.deviation());

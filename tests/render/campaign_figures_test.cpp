@@ -351,6 +351,29 @@ TEST(FrequencyResponse, HasNoGainOfATraceThatRanAwayAndNoScatterOfOneRun) {
   }
 }
 
+TEST(FrequencyResponse, SaysWhatIsThere) {
+  evaluation::CampaignResults results = test::example_campaign();
+  const Figure whole = frequency_response_figure(results);
+  EXPECT_NE(whole.subtitle.find("bars: standard deviation between those runs, which differ in height"), std::string::npos);
+  EXPECT_EQ(whole.panels.at(0).x.label, "Wave period");
+  EXPECT_EQ(frequency_response_figure(test::example_sea_campaign()).panels.at(0).x.label, "Set peak period");
+  const auto keep = [&](auto kept) {
+    std::erase_if(results.cells, [&](const auto& c) { return !kept(c); });
+    std::erase_if(results.runs, [&](const auto& r) { return !kept(r); });
+  };
+  keep([](const auto& of) { return of.height_m == 0.6; });
+  const Figure one_height = frequency_response_figure(results);
+  EXPECT_NE(one_height.subtitle.find("bars:"), std::string::npos);
+  EXPECT_EQ(one_height.subtitle.find("height"), std::string::npos) << one_height.subtitle;
+  EXPECT_TRUE(one_height.panels.at(0).x.categories.empty());
+  std::erase_if(results.runs, [](const auto& r) { return r.repeat > 0; });
+  EXPECT_EQ(frequency_response_figure(results).subtitle.find("bars"), std::string::npos) << "none is drawn";
+  keep([](const auto& of) { return of.period_s == 6; });
+  const Figure single = frequency_response_figure(results);
+  EXPECT_EQ(single.panels.at(0).x.categories, (std::vector<std::string>{"6"})) << "no ticks where there is nothing";
+  EXPECT_EQ(line_of(single.panels.at(0), "harmonic")->x, (std::vector<double>{0}));
+}
+
 TEST(SeaTrace, MethodsThatTellTheSameHeaveAreOneLine) {
   evaluation::RunRecord run = test::example_sea_run();
   run.heave["spectral"] = run.heave["harmonic"];
