@@ -31,7 +31,7 @@ Figure single_waves_figure(const CampaignResults& results) {
   residual.marks.emplace_back(
       Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kSolid}});
   Extent heights;
-  std::size_t waves = 0;
+  std::string counts;
   const double slot = 0.84 / static_cast<double>(std::max<std::size_t>(1, methods.size()));
   for (std::size_t m = 0; m < methods.size(); ++m) {
     Points points{
@@ -56,7 +56,6 @@ Figure single_waves_figure(const CampaignResults& results) {
         const double true_cm = cm(wave.true_height_m), estimated_cm = cm(wave.wave.height_m);
         if (!std::isfinite(true_cm + estimated_cm)) continue;
         heights.add(true_cm);
-        ++waves;
         points.x.push_back(true_cm);
         points.y.push_back(estimated_cm);
         errors.x.push_back(slots ? static_cast<double>(place) - 0.42 +
@@ -66,18 +65,24 @@ Figure single_waves_figure(const CampaignResults& results) {
       }
     }
     if (points.x.empty()) continue;
+    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", methods[m], points.x.size());
     against.marks.emplace_back(std::move(points));
     residual.marks.emplace_back(std::move(errors));
   }
   for (Panel* panel : {&against, &residual}) draw_same_once(panel->marks);
   if (!heights.empty()) {
     const double room = 0.08 * (heights.high - heights.low) + 1;
-    against.marks.emplace_back(Line{.x = {heights.low - room, heights.high + room},
-                                    .y = {heights.low - room, heights.high + room},
+    const double low = std::max(0.0, heights.low - room), high = heights.high + room;
+    if (low == 0) {  // no wave is lower
+      against.x.include_zero = against.y.include_zero = true;
+      if (!slots) residual.x.include_zero = true;
+    }
+    against.marks.emplace_back(Line{.x = {low, high},
+                                    .y = {low, high},
                                     .name = "equal",
                                     .look = {.color = kInk, .width_pt = 0.8, .dash = Dash::kDashed}});
   }
-  figure.subtitle = fmt::format("{} waves of all runs, ramps left out", waves);
+  figure.subtitle = "waves of all runs, ramps left out" + (counts.empty() ? "" : ": " + counts);
   figure.panels = {std::move(against), std::move(residual)};
   return figure;
 }

@@ -13,6 +13,7 @@
 #include "render/figures/methods.h"
 #include "render/figures/noise.h"
 #include "render/figures/sea.h"
+#include "render/layout.h"
 #include "render/marks.h"
 #include "tests/render/example_campaign.h"
 #include "tests/render/picture.h"
@@ -372,6 +373,23 @@ TEST(FrequencyResponse, SaysWhatIsThere) {
   const Figure single = frequency_response_figure(results);
   EXPECT_EQ(single.panels.at(0).x.categories, (std::vector<std::string>{"6"})) << "no ticks where there is nothing";
   EXPECT_EQ(line_of(single.panels.at(0), "harmonic")->x, (std::vector<double>{0}));
+}
+
+TEST(SingleWaves, AreCountedByMethodAndNoneIsLowerThanNothing) {
+  EXPECT_NE(single_waves_figure(test::example_campaign()).subtitle.find("lee2014 120, harmonic 120"), std::string::npos)
+      << "each wave once a method";
+  evaluation::CampaignResults seas = test::example_sea_campaign();
+  for (auto& run : seas.runs)
+    for (std::size_t i = 0; i < run.waves.size(); ++i)
+      run.waves[i].true_height_m = run.waves[i].wave.height_m = 0.1 + static_cast<double>(i);
+  Figure figure = single_waves_figure(seas);
+  const Line* equal = line_of(figure.panels.at(0), "equal");
+  ASSERT_NE(equal, nullptr);
+  EXPECT_EQ(equal->x.front(), 0);
+  FontBook fonts;
+  prepare_fonts(figure, fonts);
+  fonts.bake();
+  for (const PanelPlan& p : planned(figure, fonts).panels) EXPECT_EQ(p.x.low, 0);
 }
 
 TEST(SeaTrace, MethodsThatTellTheSameHeaveAreOneLine) {
