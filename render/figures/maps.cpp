@@ -46,7 +46,9 @@ Figure maps_figure(std::string title, std::string subtitle, std::vector<Panel> p
   const bool wide = figure.columns == 1;
   const double rows = std::ceil(static_cast<double>(panels.size()) / std::max(1, figure.columns));
   const double heights = static_cast<double>(grid.heights_m.size());
-  figure.height_mm = 22 + rows * (wide ? 20 + 6 * heights : std::clamp(26 + 9 * heights, 45.0, 90.0));
+  // However few the rows, the names of axis and colour bar stand beside them.
+  figure.height_mm =
+      22 + rows * (wide ? std::max(34.0, 20 + 6 * heights) : std::clamp(26 + 9 * heights, 45.0, 90.0));
   for (std::size_t i = 0; i < panels.size(); ++i) {
     auto& map = std::get<HeatMap>(panels[i].marks.front());
     map.low = low;

@@ -392,6 +392,21 @@ TEST(SingleWaves, AreCountedByMethodAndNoneIsLowerThanNothing) {
   for (const PanelPlan& p : planned(figure, fonts).panels) EXPECT_EQ(p.x.low, 0);
 }
 
+TEST(ErrorMap, OfASingleSettingHasRoomForTheNamesOfItsAxes) {
+  evaluation::CampaignResults results = test::example_campaign();
+  const auto other = [](const auto& of) {
+    return of.period_s != 6 || of.height_m != 0.6 || of.method != "harmonic";
+  };
+  std::erase_if(results.cells, other);
+  std::erase_if(results.runs, other);
+  Canvas canvas;
+  for (const Figure& figure : {error_map_figure(results), std_map_figure(results)}) {
+    const std::string svg = svg_text(figure, canvas.fonts(), {});
+    EXPECT_EQ(svg.find("\u2026"), std::string::npos) << figure.title;
+    EXPECT_NE(svg.find("Set height (cm)"), std::string::npos);
+  }
+}
+
 TEST(SeaTrace, MethodsThatTellTheSameHeaveAreOneLine) {
   evaluation::RunRecord run = test::example_sea_run();
   run.heave["spectral"] = run.heave["harmonic"];
