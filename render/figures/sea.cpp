@@ -39,7 +39,7 @@ Figure sea_states_figure(const CampaignResults& results) {
   const std::vector<Setting> settings = settings_of(results);
   const std::vector<std::string> methods = methods_of(results);
   Figure figure{.title = "Sea states: measured against true",
-                .subtitle = "campaign \"" + results.name + "\"; the set period is Tp, the set height Hm0",
+                .subtitle = "campaign \"" + results.name + "\"",
                 .share_x = true,
                 .height_mm = 165};
   Panel heave{.title = "(a) RMS error of the heave",
@@ -91,6 +91,8 @@ Figure sea_states_figure(const CampaignResults& results) {
     add(period, [](const CellResult& c) { return 100 * (c.sea.sea.tm02_s / c.sea.true_tm02_s - 1); });
     if (!has_sea) without_sea += (without_sea.empty() ? "" : ", ") + methods[m];
   }
+  if (bound_name.empty())
+    figure.subtitle += "; limit: the least to be expected, a single record may fall below";
   if (!without_sea.empty()) {
     height.marks.emplace_back(
         Note{.x = 0.01, .y = 0.97, .text = "gives no sea state: " + without_sea, .color = kFaintInk});

@@ -146,6 +146,8 @@ TEST(SeaStates, ShowTheLimitBelowEachMethodThatHasOne) {
     EXPECT_NEAR((limits[i]->x[0] + limits[i]->x[1]) / 2, harmonic->x[i], 1e-9);
     EXPECT_EQ(limits[i]->name.empty(), i > 0) << "one entry in the legend";
   }
+  EXPECT_NE(figure.subtitle.find("a single record may fall below"), std::string::npos);
+  EXPECT_EQ(sea_states_figure(test::example_sea_campaign()).subtitle.find("limit"), std::string::npos);
 }
 
 TEST(SeaTrace, ErrorsHaveNoMeanAndTheTruthIsTrue) {
