@@ -88,8 +88,9 @@ std::optional<Figure> direction_figure(const evaluation::CampaignResults& result
     return std::ranges::any_of(of.second.error_deg, [](double e) { return std::isfinite(e); });
   });
   if (!judged) return figure;
-  const Axis period{.label = "Period", .unit = "s"};
-  Panel error{.title = "Told minus true", .x = period, .y = {.label = "Difference", .unit = "°"}};
+  const Axis period{.label = "Set period", .unit = "s"};
+  Panel error{
+      .title = "Error of the direction", .x = period, .y = {.label = "Told \u2212 true", .unit = "°"}};
   Panel spread{.title = "Spread", .x = period, .y = {.label = "Spread", .unit = "°", .low = 0}};
   int color = 0;
   for (const auto& [method, seas] : by_method) {

@@ -51,8 +51,8 @@ std::string direction_answer(const evaluation::CampaignResults& results) {
 std::string direction_results_table(const evaluation::CampaignResults& results) {
   if (std::none_of(results.cells.begin(), results.cells.end(), tells_direction)) return "";
   HtmlTable table(
-      "Direction the waves came from, clockwise from true north, in degrees; blank where repeats were turned "
-      "all round. "
+      "Direction the waves came from, clockwise from true north, in degrees; a dash where repeats were "
+      "turned all round. "
       "Error: told minus the true direction of the same record, mean and root mean square over the runs. "
       "Check factor: "
       "horizontal over vertical motion.",
