@@ -94,7 +94,9 @@ std::string comparison_html(const evaluation::CampaignResults& baseline, const f
     figures += fmt::format("<h3>{}</h3>\n<div class=\"figures pair\">\n", html_text(info.caption)) +
                html_figure(left, "Baseline") + html_figure(right, "Candidate") + "</div>\n";
   }
-  if (!figures.empty()) body += "<section id=\"figures\"><h2>Figures</h2>\n" + figures + "</section>\n";
+  if (!figures.empty())
+    body +=
+        "<section id=\"figures\"><h2>Figures</h2>\n" + std::string(kOpensLarge) + figures + "</section>\n";
   return html_page("waverig: " + baseline.name + " and " + candidate.name, body + "</main>\n");
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <waverig/alarm_t.hpp>
 
 #include "estimator/evaluation/flag_names.h"
@@ -68,7 +70,8 @@ std::string height_answer(const MethodSummary& s) {
   return out + ".</li>\n";
 }
 
-std::string intro(const CampaignResults& results) {
+// sections: the page below.
+std::string intro(const CampaignResults& results, const std::string& sections) {
   std::string out = fmt::format(
       "<header>\n<h1>Wave measurement campaign \u201C{}\u201D</h1>\n"
       "<p class=\"question\">The question: how well does this low-cost sensor, "
@@ -80,16 +83,19 @@ std::string intro(const CampaignResults& results) {
   out += direction_answer(results);
   out += "</ul>\n";
   if (!results.complete) out += "<p class=\"worse\">This campaign is not complete.</p>\n";
-  return out +
-         "<nav class=\"no-print\"><ul><li><a "
-         "href=\"#results\">Results</a></li><li><a "
-         "href=\"#figures\">Figures</a></li><li><a "
-         "href=\"#budget\">Uncertainty</a></li>"
-         "<li><a href=\"#excluded\">Excluded, flags, "
-         "alarms</a></li><li><a href=\"#runs\">Runs and "
-         "waves</a></li><li><a href=\"#rig\">Rig and sensor</a></li>"
-         "<li><a "
-         "href=\"#reproduce\">Reproduce</a></li></ul></nav>\n</header>\n";
+  out += "<nav class=\"no-print\"><ul>";
+  static constexpr std::array<std::pair<const char*, const char*>, 7> kSections = {
+      {{"results", "Results"},
+       {"figures", "Figures"},
+       {"budget", "Uncertainty"},
+       {"excluded", "Excluded, flags, alarms"},
+       {"runs", "Runs and waves"},
+       {"rig", "Rig and sensor"},
+       {"reproduce", "Reproduce"}}};
+  for (const auto& [id, name] : kSections)  // some have nothing to say and are left out
+    if (sections.find(fmt::format("<section id=\"{}\">", id)) != std::string::npos)
+      out += fmt::format("<li><a href=\"#{}\">{}</a></li>", id, name);
+  return out + "</ul></nav>\n</header>\n";
 }
 
 std::string results_table(const CampaignResults& results) {
@@ -98,8 +104,8 @@ std::string results_table(const CampaignResults& results) {
       "uncertainty of the mean, k = 2. Limit: "
       "Cram\u00E9r\u2013Rao bound of the standard "
       "deviation. A number leads to the runs behind it.",
-      {"Period s", "Height cm", "Method", "Waves", "Mean", "Error rate %", "U (k = 2)", "Std", "Limit",
-       "Std / limit", "RMSE"});
+      {"Period s", "Height cm", "Method", "Waves", "Mean", "Error rate %", "U (k\u00A0=\u00A02)", "Std",
+       "Limit", "Std / limit", "RMSE"});
   const SettingColumns set(results.cells);
   for (const CellResult& cell : results.cells) {
     const evaluation::HeightStatistics& s = cell.statistics;
@@ -129,7 +135,8 @@ std::string figures_section(const fs::path& directory) {
     out += html_figure(path, info.caption);
   }
   if (out.empty()) return "";
-  return "<section id=\"figures\"><h2>Figures</h2>\n" + out + "</div>\n</section>\n";
+  return "<section id=\"figures\"><h2>Figures</h2>\n" + std::string(kOpensLarge) + out +
+         "</div>\n</section>\n";
 }
 
 std::string budget_section(const CampaignResults& results) {
@@ -319,13 +326,14 @@ std::vector<MethodSummary> summaries_of(const CampaignResults& results) {
 }
 
 std::string report_html(const CampaignResults& results, const fs::path& directory) {
+  const std::string sections = "<section id=\"results\"><h2>Results</h2>\n" +
+                               (are_seas(results) ? sea_results_table(results) : results_table(results)) +
+                               direction_results_table(results) + "</section>\n" +
+                               figures_section(directory) + budget_section(results) +
+                               excluded_section(results, directory) + runs_section(results) +
+                               rig_section(results, directory) + reproduce_section(results);
   return html_page("waverig: " + results.name,
-                   intro(results) + "<main>\n<section id=\"results\"><h2>Results</h2>\n" +
-                       (are_seas(results) ? sea_results_table(results) : results_table(results)) +
-                       direction_results_table(results) + "</section>\n" + figures_section(directory) +
-                       budget_section(results) + excluded_section(results, directory) +
-                       runs_section(results) + rig_section(results, directory) + reproduce_section(results) +
-                       "</main>\n");
+                   intro(results, sections) + "<main>\n" + sections + "</main>\n");
 }
 
 }  // namespace waverig::render

@@ -40,6 +40,10 @@ class SettingColumns {
   int period_decimals_ = 0, height_decimals_ = 0;
 };
 
+// Before figures whose text is small on a narrow screen.
+inline constexpr const char* kOpensLarge =
+    "<p class=\"faint no-print\">Pressed, a figure opens as large as it is.</p>\n";
+
 // Where a number of the tables leads: the runs of a setting and method.
 std::string cell_id(const evaluation::CellResult& cell);
 

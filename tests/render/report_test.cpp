@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <regex>
@@ -119,6 +120,9 @@ TEST(Report, StandsWithoutFiguresRunsOrResults) {
   const std::string html = report_html({}, empty.path());
   EXPECT_NE(html.find("not complete"), std::string::npos);
   EXPECT_EQ(html.find("<section id=\"figures\""), std::string::npos);
+  const std::vector<std::string> ids = all(html, " id=\"([^\"]*)\"");
+  for (const std::string& link : all(html, "href=\"#([^\"]*)\""))
+    EXPECT_NE(std::find(ids.begin(), ids.end(), link), ids.end()) << link << " leads nowhere";
 }
 
 TEST(Report, SummaryIsTheWorstOfAllSettings) {
