@@ -47,8 +47,10 @@ std::vector<LegendEntry> legend_entries(const Panel& panel, float most_px, const
     if (!line_or_shade && !extents_of(mark, panel.x.scale, panel.y.scale).has_data) continue;
     const std::string name = fitted(name_of(mark), most_px - (kSwatch + kSwatchGap + 2 * kPadding) * text_pt,
                                     fonts, kText * text_pt);
-    const auto same =
-        std::find_if(entries.begin(), entries.end(), [&](const LegendEntry& e) { return e.name == name; });
+    // By the whole name: shortened ones may look alike.
+    const auto same = std::find_if(entries.begin(), entries.end(), [&](const LegendEntry& e) {
+      return name_of(panel.marks[e.marks.front()]) == name_of(mark);
+    });
     if (same != entries.end())
       same->marks.push_back(i);
     else

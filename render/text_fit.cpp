@@ -2,18 +2,31 @@
 
 namespace waverig::render {
 
+namespace {
+
+bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }  // a character of UTF-8
+
+}  // namespace
+
 std::string fitted(const std::string& text, float most_px, const FontBook& fonts, float size_px, bool bold) {
   if (fonts.width_px(text, size_px, bold) <= most_px) return text;
-  std::string shorter = text;
-  while (!shorter.empty()) {
-    do {  // one character, with its continuation bytes
-      const bool continuation = (static_cast<unsigned char>(shorter.back()) & 0xC0U) == 0x80U;
-      shorter.pop_back();
-      if (!continuation) break;
-    } while (!shorter.empty());
-    if (fonts.width_px(shorter + "\u2026", size_px, bold) <= most_px) break;
+  // Names of a family differ at their ends: of a single word its middle is left out.
+  const bool middle = text.find(' ') == std::string::npos;
+  std::string head = text, tail;
+  if (middle) {
+    std::size_t half = text.size() / 2;
+    while (half < text.size() && continues(text[half])) ++half;
+    head = text.substr(0, half);
+    tail = text.substr(half);
   }
-  return shorter + "\u2026";
+  while (!head.empty() && fonts.width_px(head + "\u2026" + tail, size_px, bold) > most_px) {
+    while (continues(head.back())) head.pop_back();
+    head.pop_back();
+    if (tail.empty()) continue;
+    tail.erase(0, 1);
+    while (!tail.empty() && continues(tail.front())) tail.erase(0, 1);
+  }
+  return head + "\u2026" + tail;
 }
 
 std::vector<std::string> wrapped(const std::string& text, float most_px, int lines_at_most,

@@ -7,7 +7,7 @@
 
 namespace waverig::render {
 
-// The text, or as much of it as fits before an ellipsis.
+// The text, or as much of it as fits before an ellipsis; of a single word its two ends.
 std::string fitted(const std::string& text, float most_px, const FontBook& fonts, float size_px,
                    bool bold = false);
 // Broken at spaces (and at '\n') into at most `lines_at_most`, the last one fitted.

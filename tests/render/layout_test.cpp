@@ -223,5 +223,20 @@ TEST(AxisText, KeepsItsUnitWhereTheLabelIsTooLong) {
   EXPECT_LE(fonts.width_px(text, 10), 122);
 }
 
+// What differs in the names of a family stands at their ends, and every one keeps its place in the legend.
+TEST(Legend, NamesThatAreTooLongStayApart) {
+  Figure figure{.width_mm = 60, .height_mm = 60};
+  Panel panel{.legend = Legend::kAbove};
+  for (const char* name : {"my_own_estimator_with_a_long_name_v1", "my_own_estimator_with_a_long_name_v2"})
+    panel.marks.emplace_back(Line{.x = {0, 1}, .y = {0, 1}, .name = name});
+  figure.panels = {panel};
+  FontBook fonts;
+  const std::vector<LegendEntry> entries = plan_of(figure, fonts).panels[0].legend.entries;
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_TRUE(entries[0].name.starts_with("my_own") && entries[0].name.ends_with("v1")) << entries[0].name;
+  EXPECT_TRUE(entries[1].name.ends_with("v2")) << entries[1].name;
+  EXPECT_NE(entries[0].name.find("\u2026"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace waverig::render
