@@ -85,8 +85,10 @@ void draw_axes(const PanelPlan& p, const PanelView& v) {
   }
   if (const std::string text = axis_text(p.panel.y, p.y_ticks); !text.empty()) {
     const float x = p.label_left + 0.2F * label_px;
+    // Left of title, legend and tick labels is room for the ends of a long one.
+    const float most_px = p.plot.height() + 2 * std::min(p.margins.top, p.margins.bottom);
     v.painter.text(
-        {x, v.centre().y}, axis_text_fitted(p.panel.y, p.y_ticks, p.plot.height(), v.fonts, label_px),
+        {x, v.centre().y}, axis_text_fitted(p.panel.y, p.y_ticks, most_px, v.fonts, label_px),
         {.size_px = label_px, .color = ink, .h = HAlign::kCenter, .v = VAlign::kTop, .upwards = true});
   }
 }

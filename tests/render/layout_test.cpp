@@ -238,5 +238,17 @@ TEST(Legend, NamesThatAreTooLongStayApart) {
   EXPECT_NE(entries[0].name.find("\u2026"), std::string::npos);
 }
 
+TEST(Layout, ALongNameOfAnAxisReachesBesideTitleAndTicks) {
+  Figure figure{.width_mm = 80, .height_mm = 48};
+  Panel panel{.title = "title",
+              .x = {.label = "x"},
+              .y = {.label = "Standard deviation", .unit = "cm"},
+              .legend = Legend::kAbove};
+  panel.marks.emplace_back(cosine());
+  figure.panels = {panel};
+  Canvas canvas;
+  EXPECT_NE(svg_text(figure, canvas.fonts(), {}).find(">Standard deviation (cm)<"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace waverig::render
