@@ -31,7 +31,7 @@ Figure single_waves_figure(const CampaignResults& results) {
   residual.marks.emplace_back(
       Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kSolid}});
   Extent heights;
-  std::string counts;
+  Extent counts;  // of the methods
   const double slot = 0.84 / static_cast<double>(std::max<std::size_t>(1, methods.size()));
   for (std::size_t m = 0; m < methods.size(); ++m) {
     Points points{
@@ -65,7 +65,7 @@ Figure single_waves_figure(const CampaignResults& results) {
       }
     }
     if (points.x.empty()) continue;
-    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", methods[m], points.x.size());
+    counts.add(static_cast<double>(points.x.size()));
     against.marks.emplace_back(std::move(points));
     residual.marks.emplace_back(std::move(errors));
   }
@@ -82,7 +82,10 @@ Figure single_waves_figure(const CampaignResults& results) {
                                     .name = "equal",
                                     .look = {.color = kInk, .width_pt = 0.8, .dash = Dash::kDashed}});
   }
-  figure.subtitle = "waves of all runs, ramps left out" + (counts.empty() ? "" : ": " + counts);
+  if (!counts.empty())
+    figure.subtitle =
+        fmt::format("{}{:.0f} waves of each method in all runs, ramps left out",
+                    counts.low < counts.high ? fmt::format("{:.0f} to ", counts.low) : "", counts.high);
   figure.panels = {std::move(against), std::move(residual)};
   return figure;
 }

@@ -378,8 +378,10 @@ TEST(FrequencyResponse, SaysWhatIsThere) {
 }
 
 TEST(SingleWaves, AreCountedByMethodAndNoneIsLowerThanNothing) {
-  EXPECT_NE(single_waves_figure(test::example_campaign()).subtitle.find("lee2014 120, harmonic 120"), std::string::npos)
-      << "each wave once a method";
+  evaluation::CampaignResults results = test::example_campaign();
+  EXPECT_TRUE(single_waves_figure(results).subtitle.starts_with("120 waves of each method"));
+  results.runs.front().waves.pop_back();
+  EXPECT_TRUE(single_waves_figure(results).subtitle.starts_with("119 to 120 waves of each method"));
   evaluation::CampaignResults seas = test::example_sea_campaign();
   for (auto& run : seas.runs)
     for (std::size_t i = 0; i < run.waves.size(); ++i)
