@@ -115,7 +115,7 @@ Figure frequency_response_figure(const CampaignResults& results) {
   if (!without_phase.empty())
     phase.marks.emplace_back(Note{.x = 0.01,
                                   .y = 0.97,
-                                  .text = "no phase, for its heave drifts: " + without_phase,
+                                  .text = "no phase, for its heave drifts or is not told: " + without_phase,
                                   .color = kFaintInk});
   for (Panel* panel : {&gain, &phase}) draw_same_once(panel->marks);
   figure.panels = {std::move(gain), std::move(phase)};
