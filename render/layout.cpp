@@ -24,15 +24,20 @@ int most_lines(const Ticks& ticks) {
   return static_cast<int>(most);
 }
 
+// '\n' breaks a label.
+float label_width(const std::string& label, const FontBook& fonts, float size_px) {
+  float widest = 0;
+  for (std::size_t from = 0; from <= label.size();) {
+    const std::size_t to = std::min(label.find('\n', from), label.size());
+    widest = std::max(widest, fonts.width_px(std::string_view(label).substr(from, to - from), size_px));
+    from = to + 1;
+  }
+  return widest;
+}
+
 float widest_label(const Ticks& ticks, const FontBook& fonts, float size_px) {
   float widest = 0;
-  for (const Tick& t : ticks.major) {
-    for (std::size_t from = 0; from <= t.label.size();) {
-      const std::size_t to = std::min(t.label.find('\n', from), t.label.size());
-      widest = std::max(widest, fonts.width_px(std::string_view(t.label).substr(from, to - from), size_px));
-      from = to + 1;
-    }
-  }
+  for (const Tick& t : ticks.major) widest = std::max(widest, label_width(t.label, fonts, size_px));
   return widest;
 }
 
@@ -285,9 +290,11 @@ class Planner {
       if (!axis_text(p.panel.x, p.x_ticks).empty()) m.bottom += line_height(label) + 1 * pt;
       if (!p.x_ticks.major.empty() && p.panel.x.categories.empty() && p.panel.x.groups.empty()) {
         const Tick& last = p.x_ticks.major.back();
-        m.right = std::max(0.0F, p.x(last.value) + 0.5F * fonts_.width_px(last.label, tick) - p.plot.right);
+        m.right =
+            std::max(0.0F, p.x(last.value) + 0.5F * label_width(last.label, fonts_, tick) - p.plot.right);
         const Tick& first = p.x_ticks.major.front();
-        m.left = std::max(m.left, p.plot.left - p.x(first.value) + 0.5F * fonts_.width_px(first.label, tick));
+        m.left =
+            std::max(m.left, p.plot.left - p.x(first.value) + 0.5F * label_width(first.label, fonts_, tick));
       }
     }
     if (p.heat != nullptr) {

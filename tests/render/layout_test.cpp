@@ -250,5 +250,20 @@ TEST(Layout, ALongNameOfAnAxisReachesBesideTitleAndTicks) {
   EXPECT_NE(svg_text(figure, canvas.fonts(), {}).find(">Standard deviation (cm)<"), std::string::npos);
 }
 
+TEST(Layout, ABrokenLabelTakesTheRoomOfItsLongestLine) {
+  constexpr double kMidnight = 1120176000, kDay = 86400;  // 2005-07-01 00:00 UTC
+  const auto plan_from = [](double begin, double end) {
+    Figure figure;
+    figure.panels = {{.x = {.scale = Scale::kTime, .padding = 0}, .marks = {Line{.x = {begin, end}, .y = {0, 1}}}}};
+    FontBook fonts;
+    return plan_of(figure, fonts).panels[0];
+  };
+  const PanelPlan one_day = plan_from(kMidnight, kMidnight + kDay),
+                  longer = plan_from(kMidnight + kDay / 2, kMidnight + 2 * kDay + 1);
+  EXPECT_EQ(one_day.x_ticks.major.back().label, "00:00");
+  EXPECT_EQ(longer.x_ticks.major.back().label, "00:00\n07-03");
+  EXPECT_NEAR(longer.margins.right, one_day.margins.right, 3);
+}
+
 }  // namespace
 }  // namespace waverig::render
