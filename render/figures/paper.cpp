@@ -116,7 +116,10 @@ PaperTraces recorded_traces(const evaluation::RunRecord& run, const std::string&
 }
 
 Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces& traces, bool calibrated) {
-  Figure figure{.title = "Inertial data measured on the wave simulator", .share_x = true, .height_mm = 180};
+  Figure figure{.title = is_on_sea(run) ? "Inertial data measured on the buoy"
+                                        : "Inertial data measured on the wave simulator",
+                .share_x = true,
+                .height_mm = 180};
   std::vector<double> attitude_s, roll_deg, pitch_deg;
   for (const estimator::HeaveSample& sample : traces.heave) {
     const Euler euler = euler_of(sample.q_NB);
