@@ -34,7 +34,10 @@ struct FittedHeave {
 FittedHeave heave_at(const std::vector<RegularWave>& waves, double t_s, std::size_t& k) {
   while (k < waves.size() && waves[k].end_s() < t_s) ++k;
   FittedHeave result;
-  if (k == waves.size() || t_s < waves[k].begin_s()) return result;
+  if (k == waves.size()) return result;
+  // Where one wave ends and the next begins each has by its own fit: there may be a sample between.
+  const bool seam = k > 0 && waves[k].follows;
+  if (t_s < waves[k].begin_s() && !seam) return result;
   const RegularWave& wave = waves[k];
   // The other knot: the crossing before or after, where a wave follows.
   const bool later = t_s >= wave.timing.down_crossing_s;

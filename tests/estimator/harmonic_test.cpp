@@ -341,6 +341,22 @@ TEST(Harmonic, HeaveIsTheTruthWithinTheNoiseOfAWave) {
   EXPECT_LT(std::sqrt(squares / n), 0.003);
 }
 
+// Where one wave ends and the next begins each has by its own fit.
+TEST(Harmonic, KnowsHeaveBetweenTwoWavesToo) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SyntheticWaves waves = waves_of(12, 0.6, Swing::kForced);
+    waves.rate_Hz = 100;
+    waves.duration_s = 400;
+    const SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, seed);
+    const Collector out = measure(record, knowing(kFresh));
+    const auto known = [](const HeaveSample& h) { return std::isfinite(h.heave_m); };
+    const auto first = std::find_if(out.heaves.begin(), out.heaves.end(), known);
+    const auto last = std::find_if(out.heaves.rbegin(), out.heaves.rend(), known).base();
+    ASSERT_GT(last - first, 30000);
+    EXPECT_EQ(std::count_if(first, last, known), last - first) << "seed " << seed;
+  }
+}
+
 TEST(Harmonic, FindsTheSameWavesAtAnyRateAndInAnyMounting) {
   for (const double rate_Hz : {10.0, 20.0, 100.0, 285.7}) {
     SyntheticWaves waves = waves_of(5, 1, Swing::kPendulum);
