@@ -11,6 +11,7 @@
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/number_checks.h"
 #include "rig/cli/recording.h"
 
 namespace waverig::cli {
@@ -172,12 +173,12 @@ void add_calibrate(CLI::App& app, Command& chosen) {
       ->check(CLI::IsMember({kSixPositionsWay, kRotationWay}))
       ->capture_default_str();
   accelerometer->add_option("--gravity", arguments->gravity_mps2, "Local gravity, m/s^2")
-      ->check(CLI::Range(9.7, 9.9))
+      ->check(between(9.7, 9.9))
       ->capture_default_str();
   accelerometer
       ->add_option("--fixture-sigma-deg", arguments->fixture_sigma_deg,
                    "How exactly the sides stand upright, standard uncertainty")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(between(0.0, 10.0))
       ->capture_default_str();
   accelerometer->add_option("--sensor", arguments->sensor_id, "Name or serial number, kept in the file");
   accelerometer->footer(

@@ -265,12 +265,12 @@ void add_estimate(CLI::App& app, Command& chosen) {
                    "The unit rests so long at the start: take the gyroscope's bias there")
       ->check(not_negative());
   command->add_option("--gravity", arguments->gravity_mps2, "Local gravity, m/s^2")
-      ->check(CLI::Range(9.7, 9.9))
+      ->check(between(9.7, 9.9))
       ->capture_default_str();
   command
       ->add_option("--declination", arguments->declination_deg,
                    "True less magnetic north, degrees, east positive")
-      ->check(CLI::Range(-180.0, 180.0));
+      ->check(between(-180.0, 180.0));
   command->add_flag("--netcdf", arguments->netcdf, "Write heave, waves and spectrum as record.nc (CF) too");
   command->footer(
       "The sample CSV has the header utime,ax,ay,az,gx,gy,gz[,mx,my,mz][,temperature]: microseconds, m/s^2, "

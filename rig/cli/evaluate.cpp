@@ -25,6 +25,7 @@
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/number_checks.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
@@ -231,22 +232,23 @@ void add_evaluate(CLI::App& app, Command& chosen) {
           ->allow_extra_args(false)};
   CLI::Option* truth = command->add_option(
       "--truth", arguments->truth, "Heave CSV to hold the heave against; column 'moving' selects where");
-  arguments->of_heave = {truth,
-                         command
-                             ->add_option("--high-pass-hz", arguments->against.high_pass_hz,
-                                          "Compare above this frequency only (zero phase)")
-                             ->check(CLI::NonNegativeNumber)
-                             ->needs(truth),
-                         command->add_option("--zero-line-m", arguments->waves.level_m,
-                                             "Zero line of the waves, above the mean"),
-                         command->add_flag("--detrend", arguments->waves.remove_trend,
-                                           "Zero line is the straight line of least squares"),
-                         command
-                             ->add_option("--dead-band-m", arguments->waves.dead_band_m,
-                                          "A crossing counts once the heave has left this band")
-                             ->check(CLI::NonNegativeNumber),
-                         command->add_flag("--netcdf", arguments->netcdf,
-                                           "Write heave, waves and spectrum as record.nc (CF) too")};
+  arguments->of_heave = {
+      truth,
+      command
+          ->add_option("--high-pass-hz", arguments->against.high_pass_hz,
+                       "Compare above this frequency only (zero phase)")
+          ->check(not_negative())
+          ->needs(truth),
+      command->add_option("--zero-line-m", arguments->waves.level_m, "Zero line of the waves, above the mean")
+          ->check(finite()),
+      command->add_flag("--detrend", arguments->waves.remove_trend,
+                        "Zero line is the straight line of least squares"),
+      command
+          ->add_option("--dead-band-m", arguments->waves.dead_band_m,
+                       "A crossing counts once the heave has left this band")
+          ->check(not_negative()),
+      command->add_flag("--netcdf", arguments->netcdf,
+                        "Write heave, waves and spectrum as record.nc (CF) too")};
   command->footer(
       "Examples:\n"
       "  waverig evaluate results/table2\n"

@@ -42,16 +42,23 @@ int film(const FilmArguments& arguments) {
 void add_film(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<FilmArguments>();
   CLI::App* command = app.add_subcommand("film", "Make a film of a recorded run");
-  command->add_option("log", arguments->log, "LCM event log of a run, e.g. results/table2/runs/….lcm")->required();
+  command->add_option("log", arguments->log, "LCM event log of a run, e.g. results/table2/runs/….lcm")
+      ->required();
   command->add_option("--out", arguments->out, "MP4 file (H.264)")->required();
-  command->add_option("--method", arguments->method, "Whose heave is shown; the one nearest to the truth by default");
-  command->add_option("--begin", arguments->film.begin_s, "Seconds of the record; the steady part's start by default");
-  command->add_option("--seconds", arguments->film.duration_s, "Of the record; two periods by default");
+  command->add_option("--method", arguments->method,
+                      "Whose heave is shown; the one nearest to the truth by default");
+  command
+      ->add_option("--begin", arguments->film.begin_s,
+                   "Seconds of the record; the steady part's start by default")
+      ->check(finite());
+  command->add_option("--seconds", arguments->film.duration_s, "Of the record; two periods by default")
+      ->check(positive());
   command->add_option("--speed", arguments->film.speed, "Record seconds per film second")
       ->check(positive())
       ->capture_default_str();
   command->add_flag("--light", arguments->light, "On white instead of dark");
-  command->footer("Example:\n  waverig film results/table2/runs/T12.00s_H100.0cm_r1.lcm --out rig.mp4 --speed 2");
+  command->footer(
+      "Example:\n  waverig film results/table2/runs/T12.00s_H100.0cm_r1.lcm --out rig.mp4 --speed 2");
   command->callback([arguments, &chosen] { chosen = [arguments] { return film(*arguments); }; });
 }
 

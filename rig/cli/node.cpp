@@ -5,6 +5,7 @@
 #include "rig/cli/commands.h"
 #include "rig/cli/nodes/addresses.h"
 #include "rig/cli/nodes/nodes.h"
+#include "rig/cli/number_checks.h"
 
 namespace waverig::cli {
 namespace {
@@ -47,7 +48,7 @@ void add_campaign_and_run(CLI::App& command, std::string& campaign, std::string&
 void add_speed(CLI::App& command, double& speed) {
   command
       .add_option("--speed", speed, "Of the rig's time against real time; the same for rig-sim and motion")
-      ->check(CLI::Range(0.01, 100.0))
+      ->check(between(0.01, 100.0))
       ->capture_default_str();
 }
 
@@ -65,7 +66,7 @@ void add_rig_sim(CLI::App& nodes, Command& chosen) {
   command
       ->add_option("--watchdog-ms", a->watchdog_ms,
                    "The drive stops when it hears nothing for so long, in the rig's time")
-      ->check(CLI::Range(20.0, 10000.0))
+      ->check(between(20.0, 10000.0))
       ->capture_default_str();
   add_speed(*command, a->speed);
   command->footer(
@@ -84,16 +85,16 @@ void add_motion(CLI::App& nodes, Command& chosen) {
   command
       ->add_option("--max-cycle-gap-ms", a->max_cycle_gap_ms,
                    "Alarm where two control cycles are further apart")
-      ->check(CLI::Range(10.0, 10000.0))
+      ->check(between(10.0, 10000.0))
       ->capture_default_str();
   command
       ->add_option("--max-following-error-deg", a->max_following_error_deg,
                    "Alarm where the arm is further from its setpoint")
-      ->check(CLI::Range(0.01, 45.0))
+      ->check(between(0.01, 45.0))
       ->capture_default_str();
   command
       ->add_option("--response-timeout-ms", a->response_timeout_ms, "How long the drive may take to answer")
-      ->check(CLI::Range(1.0, 5000.0))
+      ->check(between(1.0, 5000.0))
       ->capture_default_str();
   add_speed(*command, a->speed);
   command->footer(
@@ -146,7 +147,7 @@ void add_evaluator(CLI::App& nodes, Command& chosen) {
   command
       ->add_option("--quiet-s", a->quiet_s,
                    "Ends when no estimate came for so long after the end of the record")
-      ->check(CLI::Range(0.1, 60.0))
+      ->check(between(0.1, 60.0))
       ->capture_default_str();
   command->footer(
       "Exit status 1 where the run was stopped, or nothing was heard.\n"
@@ -164,7 +165,7 @@ void add_recorder(CLI::App& nodes, Command& chosen) {
   command
       ->add_option("--quiet-s", a->quiet_s,
                    "With --one-record: ends when no estimate came for so long after its end")
-      ->check(CLI::Range(0.1, 60.0))
+      ->check(between(0.1, 60.0))
       ->capture_default_str();
   command->footer(
       "Examples:\n"

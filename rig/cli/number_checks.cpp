@@ -29,6 +29,19 @@ CLI::Validator positive() {
   return check<double>("POSITIVE", "a number above 0", [](double x) { return x > 0 && std::isfinite(x); });
 }
 
+CLI::Validator finite() {
+  return check<double>("", "a number", [](double x) { return std::isfinite(x); });
+}
+
+CLI::Validator between(double low, double high) {
+  const auto complaint = [low, high](std::string& text) {
+    double number{};
+    if (CLI::detail::lexical_cast(text, number) && number >= low && number <= high) return std::string();
+    return fmt::format("{}: expected a number from {:g} to {:g}", text, low, high);
+  };
+  return {complaint, fmt::format("in [{:g} - {:g}]", low, high)};
+}
+
 CLI::Validator seed() {
   return check<std::int64_t>("NONNEGATIVE", "a whole number from 0 to 9.2e18",
                              [](std::int64_t x) { return x >= 0 && x <= 9'200'000'000'000'000'000; });

@@ -7,6 +7,8 @@ namespace waverig::cli {
 
 CLI::Validator not_negative();
 CLI::Validator positive();
-CLI::Validator seed();  // what a campaign file may hold
+CLI::Validator finite();
+CLI::Validator between(double low, double high);  // both included
+CLI::Validator seed();                            // what a campaign file may hold
 
 }  // namespace waverig::cli
