@@ -26,6 +26,7 @@
 #include "rig/cli/number_checks.h"
 #include "rig/cli/recording.h"
 #include "rig/cli/signals.h"
+#include "rig/nodes/sample_watch.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
@@ -138,11 +139,13 @@ class SeaStates : public estimator::Output {
 
 // What went by of the record.
 struct Record {
-  std::int64_t samples = 0, begin_utime = 0, end_utime = 0;
+  rig::SampleWatch watch;
+  std::int64_t begin_utime = 0, end_utime = 0;
   double force_sum_mps2 = 0;
 
   void add(const ImuSample& sample) {
-    if (samples++ == 0) begin_utime = sample.utime;
+    if (watch.samples() == 0) begin_utime = sample.utime;
+    watch.add(sample);
     end_utime = sample.utime;
     force_sum_mps2 += sample.f_B.norm();
   }
@@ -166,7 +169,8 @@ std::string summary_json(const evaluation::Summary& summary, const EstimateArgum
   made_of["gravity_mps2"] = arguments.gravity_mps2;
   made_of["declination_deg"] = arguments.declination_deg;
   made_of["rest_s"] = arguments.rest_s;
-  made_of["samples"] = record.samples;
+  made_of["samples"] = record.watch.samples();
+  made_of["samples_left_out"] = record.watch.left_out();
   made_of["begin_utime"] = record.begin_utime;
   made_of["end_utime"] = record.end_utime;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -217,7 +221,7 @@ int estimate(const EstimateArguments& arguments) {
     sea_states.add(sample);
   }
   method->finish(collector);
-  check_units(record.force_sum_mps2 / static_cast<double>(record.samples), arguments);
+  check_units(record.force_sum_mps2 / static_cast<double>(record.watch.samples()), arguments);
 
   const std::vector<estimator::Wave> waves = collector.waves();
   evaluation::Summary summary = evaluation::summary_of(arguments.method, waves);
@@ -237,6 +241,8 @@ int estimate(const EstimateArguments& arguments) {
   evaluation::write_waves_csv(out / "waves.csv", waves);
   const std::string json = summary_json(summary, arguments, record);
   evaluation::write_atomically(out / "summary.json", json);
+  if (const std::string words = record.watch.words(); !words.empty())
+    fmt::print(stderr, "waverig: {}: {}\n", arguments.input, words);
   fmt::print("{}", json);
   return 0;
 }

@@ -30,7 +30,7 @@ void EstimatorNode::take(const imu_t& m) {
   if (!method_ || (awaiting_ && !count_.anew())) return;
   estimator::ImuSample sample = estimator::sample_of(m);
   if (missing > 0) sample.flags |= flag::kGap;
-  samples_ += 1;
+  watch_.add(sample);
   samples_missing_ += missing;
   awaiting_ = false;
   method_->add(sample, *this);
@@ -38,6 +38,7 @@ void EstimatorNode::take(const imu_t& m) {
 
 void EstimatorNode::begin() {
   method_ = estimator::make_method(name_, settings_);
+  watch_.begin_record();
   awaiting_ = true;
 }
 

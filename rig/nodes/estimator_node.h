@@ -8,6 +8,7 @@
 
 #include "estimator/method.h"
 #include "lcmtypes/bus.h"
+#include "rig/nodes/sample_watch.h"
 #include "rig/nodes/sequence_watch.h"
 
 namespace waverig::rig {
@@ -19,7 +20,8 @@ class EstimatorNode : private estimator::Output {
 
   bool recording() const { return method_ != nullptr; }
   std::int64_t records() const { return records_; }             // that have ended
-  std::int64_t samples() const { return samples_; }             // of all records
+  std::int64_t samples() const { return watch_.samples(); }     // of all records
+  const SampleWatch& watch() const { return watch_; }           // of all records: what the method leaves out
   std::int64_t samples_missing() const { return samples_missing_; }   // of all records; the next one carries flag::kGap
 
  private:
@@ -36,7 +38,8 @@ class EstimatorNode : private estimator::Output {
   std::unique_ptr<estimator::Method> method_;   // of the record that runs; none between records
   SequenceWatch count_;
   bool awaiting_ = false;                       // the record's first sample
-  std::int64_t records_ = 0, samples_ = 0, samples_missing_ = 0;
+  std::int64_t records_ = 0, samples_missing_ = 0;
+  SampleWatch watch_;
 };
 
 }  // namespace waverig::rig

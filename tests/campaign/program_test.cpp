@@ -11,8 +11,11 @@
 #include <sstream>
 #include <string>
 #include <vector>
+#include <waverig/imu_t.hpp>
 
 #include "estimator/calibration/accelerometer_calibration.h"
+#include "lcmtypes/channels.h"
+#include "lcmtypes/event_log.h"
 
 #include "tests/campaign/temporary_directory.h"
 
@@ -248,6 +251,37 @@ TEST(Program, EstimatesARecordedRunAsTheSweepDid) {
   const std::size_t at = outcome.out.find("\"h13_m\":");
   ASSERT_NE(at, std::string::npos) << outcome.out;
   EXPECT_NEAR(std::stod(outcome.out.substr(at + 8)), 0.5, 0.02) << "of the steady waves: the ramps' are lower";
+}
+
+TEST(Program, SaysWhichSamplesOfALogWereLeftOutAndWhy) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out done").status, 0);
+  const std::string log = "done/runs/T04.00s_H050.0cm_r1.lcm";
+  const Outcome good = run(temporary, "estimate " + log + " --out good");
+  EXPECT_EQ(good.err, "");
+  EXPECT_NE(good.out.find("\"samples_left_out\": 0"), std::string::npos) << good.out;
+  // The same run, the sensor's clock set back by five seconds after the first thousand samples.
+  EventLogReader reader(temporary / log);
+  EventLogWriter writer(temporary / "back.lcm");
+  LogEvent event;
+  for (int samples = 0; reader.next(event);) {
+    if (event.channel != channel::kImu) continue;
+    imu_t m{};
+    ASSERT_TRUE(event.decode(m));
+    if (++samples > 1000) m.utime -= 5'000'000;
+    std::vector<std::uint8_t> data(static_cast<std::size_t>(m.getEncodedSize()));
+    m.encode(data.data(), 0, m.getEncodedSize());
+    writer.write(event.utime, event.channel, data.data(), data.size());
+  }
+  writer.close();
+  const Outcome back = run(temporary, "estimate back.lcm --out back");
+  EXPECT_EQ(back.status, 0) << back.err;
+  EXPECT_TRUE(back.err.starts_with("waverig: back.lcm: 500 of ")) << back.err;
+  EXPECT_NE(back.err.find("(from sample 1001, time "), std::string::npos) << back.err;
+  EXPECT_NE(back.err.find("was the clock set back by 5.0 s?"), std::string::npos) << back.err;
+  EXPECT_EQ(std::count(back.err.begin(), back.err.end(), '\n'), 1) << back.err;
+  EXPECT_NE(back.out.find("\"samples_left_out\": 500"), std::string::npos) << back.out;
 }
 
 std::string six_sides(double bias_mps2) {

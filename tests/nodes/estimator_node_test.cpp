@@ -88,6 +88,18 @@ TEST(EstimatorNode, NoticesThatARecordsFirstSamplesWereLost) {
   EXPECT_EQ(samples.node().samples_missing(), 3);
 }
 
+TEST(EstimatorNode, TellsWhatItsMethodLeavesOut) {
+  Samples samples;
+  samples.record(RecordAction::kBegin);
+  samples.send(0, 500);
+  samples.lose(-100);  // the clock is set back by a second
+  samples.send(500, 1000);
+  samples.record(RecordAction::kEnd);
+  EXPECT_EQ(samples.node().watch().left_out(), 100);
+  EXPECT_NE(samples.node().watch().words().find("set back by 1.0 s?"), std::string::npos)
+      << samples.node().watch().words();
+}
+
 TEST(EstimatorNode, ServesRecordAfterRecord) {
   Samples samples;
   for (int i = 0; i < 3; ++i) {

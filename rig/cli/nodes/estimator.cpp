@@ -33,15 +33,22 @@ int run_estimator(const EstimatorArguments& arguments) {
   fmt::print(stderr, "estimator {}: ready\n", arguments.method);
 
   std::int64_t reported = 0;
+  bool told = false;
   while (requests.next() != Request::kStop && !(arguments.one_record && node.records() > 0)) {
     bus.handle(kTick_ms);
     if (reported == 0 && node.samples_missing() > 0)
       fmt::print(stderr, "estimator {}: samples are missing, what follows them is flagged\n",
                  arguments.method);
     reported = node.samples_missing();
+    if (!told && node.watch().left_out() > 0)
+      fmt::print(stderr, "estimator {}: samples are left out; the reasons follow at the end\n",
+                 arguments.method);
+    told = node.watch().left_out() > 0;
   }
   fmt::print(stderr, "estimator {}: {} records, {} samples, {} missing{}\n", arguments.method, node.records(),
              node.samples(), node.samples_missing(), node.recording() ? "; stopped inside a record" : "");
+  if (const std::string words = node.watch().words(); !words.empty())
+    fmt::print(stderr, "estimator {}: {}\n", arguments.method, words);
   return 0;
 }
 
