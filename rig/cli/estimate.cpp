@@ -221,6 +221,7 @@ int estimate(const EstimateArguments& arguments) {
     sea_states.add(sample);
   }
   method->finish(collector);
+  check_time_unit(arguments.input, record.watch.usual_interval_s());
   check_units(record.force_sum_mps2 / static_cast<double>(record.watch.samples()), arguments);
 
   const std::vector<estimator::Wave> waves = collector.waves();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "estimator/evaluation/atomic_file.h"
+#include "estimator/evaluation/even_series.h"
 #include "estimator/evaluation/heave_against_truth.h"
 #include "estimator/evaluation/heave_csv.h"
 #include "estimator/evaluation/heave_spectrum.h"
@@ -26,6 +27,7 @@
 #include "lcmtypes/flags.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/number_checks.h"
+#include "rig/cli/recording.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
@@ -53,6 +55,9 @@ int evaluate_heave(const EvaluateArguments& arguments) {
   if (arguments.out.empty())
     throw UserError("--out is missing; expected a directory for waves.csv and summary.json");
   const evaluation::HeaveSeries heave = evaluation::read_heave_csv(arguments.input);
+  if (heave.utime.size() > 1)
+    check_time_unit(arguments.input,
+                    static_cast<double>(evaluation::median_interval(heave.utime)) * kMicrosecond);
   const auto counted =
       evaluation::count_waves(heave.utime, heave.heave_m, arguments.waves, heave.heave_sigma_m);
   const auto waves = evaluation::waves_of(counted);

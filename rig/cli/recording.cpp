@@ -73,6 +73,15 @@ SampleSource uncalibrated_samples_of(const fs::path& path) {
   };
 }
 
+void check_time_unit(const std::string& file, double usual_interval_s) {
+  constexpr double kShortest_s = 1e-4, kLongest_s = 2;
+  if (usual_interval_s > 0 && (usual_interval_s < kShortest_s || usual_interval_s > kLongest_s))
+    throw UserError(
+        fmt::format("{}: column utime: by its times a row every {:g} s; expected microseconds, a row every "
+                    "{:g} to {:g} s",
+                    file, usual_interval_s, kShortest_s, kLongest_s));
+}
+
 std::vector<ImuSample> all_of(const SampleSource& source) {
   std::vector<ImuSample> samples;
   for (ImuSample sample; source(sample);) samples.push_back(sample);

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "estimator/types.h"
@@ -17,6 +18,11 @@ SampleSource samples_of(const std::filesystem::path& path);
 // For who is about to calibrate them. A log says of its samples whether that is done, and is refused then; a
 // CSV does not say.
 SampleSource uncalibrated_samples_of(const std::filesystem::path& path);
+
+// Seconds, milliseconds or nanoseconds in the place of microseconds would make waves of micrometres or of
+// kilometres: throws UserError where the usual interval of a file's times can be none of a wave record. 0:
+// not known.
+void check_time_unit(const std::string& file, double usual_interval_s);
 
 std::vector<estimator::ImuSample> all_of(const SampleSource& source);
 

@@ -16,6 +16,7 @@ class SampleWatch {
 
   std::int64_t samples() const { return samples_; }
   std::int64_t left_out() const { return late_ + ahead_ + implausible_ + spikes_ + flat_; }
+  double usual_interval_s() const { return guard_.usual_interval_s(); }
   // Empty where nothing was left out and nothing is missing.
   std::string words() const;
 

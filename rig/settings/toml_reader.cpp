@@ -229,7 +229,7 @@ void TomlTable::refuse_unknown(const Shared& shared) {
 TomlFile::TomlFile(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
+  if (!in || (in.peek() != std::ifstream::traits_type::eof() && !(text << in.rdbuf())) || in.bad())
     throw UserError(fmt::format("{}: cannot be read; expected a TOML file", path.string()));
   *this = TomlFile(text.str(), path.string());
 }

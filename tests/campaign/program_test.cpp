@@ -86,6 +86,14 @@ TEST_P(ProgramRefuses, WithExitTwoAndOneLine) {
   temporary.write("no_header.csv", "1,2,3\n");
   temporary.write("truncated.lcm", std::string("\xED\xA1\xDA\x01", 4) + "short");
   temporary.write("heave.csv", "utime,heave_m\n0,1\n0,2\n");
+  temporary.write("empty.toml", "");
+  std::string milliseconds = "utime,ax,ay,az,gx,gy,gz\n", seconds = "utime,heave_m\n";
+  for (int row = 0; row < 300; ++row) {
+    milliseconds += std::to_string(10 * row) + ",0,0," + std::to_string(-9.8 + 0.01 * (row % 7)) + ",0,0,0\n";
+    seconds += std::to_string(row) + "," + std::to_string(row % 7) + "\n";
+  }
+  temporary.write("milliseconds.csv", milliseconds);
+  temporary.write("seconds.csv", seconds);
   const Outcome outcome = run(temporary, GetParam().arguments);
   EXPECT_EQ(outcome.status, 2) << outcome.err;
   EXPECT_NE(outcome.err.find(GetParam().complaint), std::string::npos) << outcome.err;
@@ -107,6 +115,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"TooHigh", "sweep too_high.toml --out out", "too_high.toml:4: sweep.heights_cm = 900"},
         BadCall{"BadShard", "sweep too_high.toml --out out --shard 3/2", "--shard 3/2"},
         BadCall{"BrokenRow", "estimate broken_row.csv --out out", "broken_row.csv, line 3, column az: 'x'"},
+        BadCall{"TimesInMilliseconds", "estimate milliseconds.csv --out out", "milliseconds.csv: column utime: by its times a row every 1e-05 s; expected microseconds"},
+        BadCall{"HeaveTimesInSeconds", "evaluate seconds.csv --out out", "seconds.csv: column utime: by its times a row every 1e-06 s; expected microseconds"},
+        BadCall{"EmptyCampaign", "sweep empty.toml --out out", "empty.toml:1: name is missing"},
         BadCall{"NoHeader", "estimate no_header.csv --out out", "no_header.csv, line 1"},
         BadCall{"TruncatedLog", "estimate truncated.lcm --out out", "truncated.lcm"},
         BadCall{"UnknownMethod", "estimate broken_row.csv --method magic --out out", "magic"},
