@@ -39,6 +39,8 @@ void HeaveCsvWriter::write(const estimator::HeaveSample& s) {
   file_.write(fmt::format("{},{},{}\n", s.utime, cell(s.heave_m), cell(s.heave_sigma_m)));
 }
 
+void HeaveCsvWriter::flush() { file_.flush(); }
+
 void HeaveCsvWriter::close() { file_.commit(); }
 
 }  // namespace waverig::evaluation

@@ -23,6 +23,7 @@ class HeaveCsvWriter {
  public:
   explicit HeaveCsvWriter(const std::filesystem::path& path);
   void write(const estimator::HeaveSample& sample);
+  void flush();  // the disk has it; what stood under its name still stands
   void close();  // the file is there from now on
 
  private:

@@ -95,6 +95,7 @@ class Collector : public estimator::Output {
   void wave(const estimator::Wave& wave) override { waves_.push_back(wave); }
   void sea(const estimator::SeaState& sea) override { seas_.push_back(sea); }
 
+  void flush() { writer_.flush(); }
   void close() { writer_.close(); }
   // The method's own waves; of a method that gives none, the zero-up-crossing waves of its heave.
   std::vector<estimator::Wave> waves() const {
@@ -203,8 +204,6 @@ int estimate(const EstimateArguments& arguments) {
   const fs::path out = arguments.out;
   std::error_code error;
   fs::create_directories(out, error);
-  // The last to be written: while it is missing the folder is not finished.
-  if (!error) fs::remove(out / "summary.json", error);
   if (error)
     throw UserError(fmt::format("--out {}: {}; expected a directory that can be made and written",
                                 arguments.out, error.message()));
@@ -230,8 +229,14 @@ int estimate(const EstimateArguments& arguments) {
   std::vector<estimator::SeaState> seas = sea_states.finish();
   seas.insert(seas.end(), collector.seas().begin(), collector.seas().end());
   evaluation::take_sea(summary, seas);
+  const std::string json = summary_json(summary, arguments, record);
   end_if_told();
-  collector.close();
+  evaluation::AtomicFile waves_file(out / "waves.csv"), summary_file(out / "summary.json");
+  waves_file.write(evaluation::waves_csv(waves));
+  summary_file.write(json);
+  collector.flush();
+  waves_file.flush();
+  summary_file.flush();
   if (arguments.netcdf) {
     const evaluation::HeaveSeries& heave = collector.heave_series();
     const evaluation::HeaveSpectrum spectrum = evaluation::spectrum_of(heave.utime, heave.heave_m);
@@ -239,9 +244,12 @@ int estimate(const EstimateArguments& arguments) {
         out / "record.nc",
         {heave, waves, spectrum, summary, std::string("waverig ") + kVersion, "Heave of " + arguments.input});
   }
-  evaluation::write_waves_csv(out / "waves.csv", waves);
-  const std::string json = summary_json(summary, arguments, record);
-  evaluation::write_atomically(out / "summary.json", json);
+  // What an earlier call left has stood until now. Its summary goes first and the new one comes last: while
+  // it is missing the folder is not finished.
+  fs::remove(out / "summary.json");
+  collector.close();
+  waves_file.commit();
+  summary_file.commit();
   if (const std::string words = record.watch.words(); !words.empty())
     fmt::print(stderr, "waverig: {}: {}\n", arguments.input, words);
   fmt::print("{}", json);

@@ -421,6 +421,17 @@ TEST(Program, LeavesNothingHalfWhereAnEstimateIsInterrupted) {
   EXPECT_TRUE(std::filesystem::is_empty(temporary / "out"));
 }
 
+TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  temporary.write("broken.csv", wave_record() + "120000000,0,0,x,0,0,0\n");
+  ASSERT_EQ(run(temporary, "estimate wave.csv --out out").status, 0);
+  const std::string summary = bytes_of(temporary / "out/summary.json"), heave = bytes_of(temporary / "out/heave.csv");
+  EXPECT_EQ(run(temporary, "estimate broken.csv --out out").status, 2);
+  EXPECT_EQ(bytes_of(temporary / "out/summary.json"), summary);
+  EXPECT_EQ(bytes_of(temporary / "out/heave.csv"), heave);
+}
+
 TEST(Program, PlanSaysNoWithExitOneAndTheReason) {
   const TemporaryDirectory temporary;
   temporary.write("c.toml", "name = \"t\"\n[sweep]\nperiods_s = [1.0, 6.0]\nheights_cm = [200.0]\n");
