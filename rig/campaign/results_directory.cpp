@@ -27,15 +27,26 @@ fs::path partial_of(fs::path directory) {
   return directory += ".partial";
 }
 
+// Of a campaign, or of waverig analyse compass.
+bool holds_results(const fs::path& directory) {
+  return fs::exists(directory / "results.json") || fs::exists(directory / "compass.csv");
+}
+
 }  // namespace
 
 ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode)
     : directory_(directory), working_(partial_of(directory)), mode_(mode) {
+  if (fs::exists(directory_) && !fs::is_directory(directory_))
+    throw UserError(fmt::format("--out {}: is a file; expected a directory", directory_.string()));
   const bool finished = fs::exists(directory_) && !fs::is_empty(directory_);
   if (finished && mode != Mode::kReplace)
     throw UserError(
         fmt::format("--out {}: is there already; expected a new directory, or --replace to do it anew",
                     directory_.string()));
+  if (finished && !holds_results(directory_))
+    throw UserError(fmt::format(
+        "--out {}: holds no results that --replace could replace; expected a results directory or a new one",
+        directory_.string()));
   if (mode == Mode::kFresh && fs::exists(working_))
     throw UserError(fmt::format(
         "--out {}: {} holds an unfinished campaign; expected --resume to go on or --replace to do it anew",

@@ -12,7 +12,8 @@ class ResultsDirectory {
   enum class Mode { kFresh, kResume, kReplace };
 
   // kFresh refuses where DIR exists or a DIR.partial waits to be resumed; kResume goes on in DIR.partial (or
-  // begins it); kReplace begins anew and lets an existing DIR stand until finish(). Throws UserError naming
+  // begins it); kReplace begins anew and lets an existing DIR stand until finish(), but takes the place of
+  // results alone: a file, or a folder of anything else, is nobody's to remove. Throws UserError naming
   // --out.
   ResultsDirectory(const std::filesystem::path& directory, Mode mode);
 

@@ -45,6 +45,21 @@ TEST(ResultsDirectory, KeepsTheOldResultsUntilTheNewAreWhole) {
   EXPECT_EQ(bytes_of(temporary / "out/results.json"), "new");
 }
 
+TEST(ResultsDirectory, ReplacesNothingButResults) {
+  const TemporaryDirectory temporary;
+  temporary.write("recording.csv", "utime");
+  fs::create_directories(temporary / "mine");
+  temporary.write("mine/campaign.toml", "my own");
+  for (const char* taken : {"recording.csv", "mine", "."}) {
+    EXPECT_THROW(ResultsDirectory(temporary / taken, Mode::kReplace), UserError) << taken;
+    EXPECT_THROW(ResultsDirectory(temporary / taken, Mode::kFresh), UserError) << taken;
+  }
+  EXPECT_EQ(bytes_of(temporary / "recording.csv"), "utime");
+  EXPECT_EQ(bytes_of(temporary / "mine/campaign.toml"), "my own");
+  fs::create_directories(temporary / "empty");
+  EXPECT_NO_THROW(ResultsDirectory(temporary / "empty", Mode::kReplace).finish());
+}
+
 TEST(ResultsDirectory, ResumesOnlyTheSameSettings) {
   const TemporaryDirectory temporary;
   ResultsDirectory(temporary / "out", Mode::kFresh).claim("seed = 1\n", "1.0");
