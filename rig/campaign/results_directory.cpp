@@ -8,12 +8,13 @@
 
 #include "estimator/evaluation/atomic_file.h"
 #include "lcmtypes/error.h"
+#include "rig/campaign/settings.h"
 
 namespace waverig::rig {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kSettingsFile = "campaign.toml";
+constexpr const char *kSettingsFile = "campaign.toml", *kCalibrationFile = "calibration.json";
 
 std::string read_text(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -30,6 +31,19 @@ fs::path partial_of(fs::path directory) {
 // Of a campaign, or of waverig analyse compass.
 bool holds_results(const fs::path& directory) {
   return fs::exists(directory / "results.json") || fs::exists(directory / "compass.csv");
+}
+
+// Under its own name once it is whole. Logs are large and nobody writes into one that is there: a second name
+// for the same file where the disk can, else a copy.
+void take_file(const fs::path& from, const fs::path& to) {
+  if (!fs::exists(from) || (fs::exists(to) && fs::equivalent(from, to))) return;
+  fs::path partial = to;
+  partial += ".partial";
+  fs::remove(partial);
+  std::error_code error;
+  if (from.extension() == ".lcm") fs::create_hard_link(from, partial, error);
+  if (!fs::exists(partial)) fs::copy_file(from, partial);
+  fs::rename(partial, to);
 }
 
 }  // namespace
@@ -89,6 +103,20 @@ void ResultsDirectory::finish() {
   } else {
     fs::rename(working_, directory_);
   }
+}
+
+void refuse_other_campaign(const fs::path& from, const fs::path& to) {
+  const fs::path settings = to / kSettingsFile;
+  if (fs::exists(settings) && read_text(settings) != read_text(from / kSettingsFile))
+    throw UserError(fmt::format("--out {}: {} is of another campaign than {}; expected a new directory",
+                                to.string(), settings.string(), (from / kSettingsFile).string()));
+}
+
+void take_campaign(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to / "runs");
+  for (const char* file : {kSettingsFile, kCalibrationFile, kFrontEndFile}) take_file(from / file, to / file);
+  for (const auto& log : fs::directory_iterator(from / "runs"))
+    if (log.path().extension() == ".lcm") take_file(log.path(), to / "runs" / log.path().filename());
 }
 
 }  // namespace waverig::rig

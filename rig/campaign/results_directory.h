@@ -32,4 +32,9 @@ class ResultsDirectory {
   Mode mode_;
 };
 
+// A campaign judged into another directory: settings, calibrations and logs come with it, so that figures,
+// report and compare take that directory as they take the first.
+void refuse_other_campaign(const std::filesystem::path& from, const std::filesystem::path& to);  // UserError
+void take_campaign(const std::filesystem::path& from, const std::filesystem::path& to);
+
 }  // namespace waverig::rig

@@ -25,6 +25,7 @@
 #include "estimator/evaluation/zero_crossing.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
+#include "rig/campaign/results_directory.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/number_checks.h"
 #include "rig/cli/recording.h"
@@ -181,8 +182,10 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
                  out = arguments.out.empty() ? directory : fs::path(arguments.out);
   const auto others = other_methods(arguments.others);
   evaluation::CampaignResults results = evaluation::read_results(directory);
-  std::vector<fs::path> logs;
   std::error_code error;  // of a folder that is not there or may not be read: no logs
+  const bool elsewhere = !fs::equivalent(directory, out, error);
+  if (elsewhere) rig::refuse_other_campaign(directory, out);
+  std::vector<fs::path> logs;
   for (const auto& entry : fs::directory_iterator(directory / "runs", error))
     if (entry.path().extension() == ".lcm") logs.push_back(entry.path());
   if (logs.empty())
@@ -204,6 +207,7 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
   results.judged_version = kVersion;
   results.judged_command = command_of(arguments);
   make_directory(out.string());
+  if (elsewhere) rig::take_campaign(directory, out);
   evaluation::write_results(out, results);
   fmt::print("{}", evaluation::results_csv(results.cells));
   return 0;

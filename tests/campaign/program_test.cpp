@@ -203,6 +203,31 @@ TEST(Program, ReportsCampaignsOfWavesAndOfSeasAndHoldsThemSideBySide) {
   EXPECT_FALSE(std::filesystem::exists(temporary / "none.html"));
 }
 
+TEST(Program, JudgesIntoADirectoryThatIsWholeByItself) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out done").status, 0);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out other --seed 7").status, 0);
+  ASSERT_EQ(run(temporary, "evaluate done --out anew").status, 0);
+  ASSERT_EQ(run(temporary, "evaluate done --out anew").status, 0) << "again";
+  std::filesystem::remove_all(temporary / "done");
+  const Outcome figures = run(temporary, "figures anew");
+  EXPECT_EQ(figures.status, 0) << figures.err;
+  EXPECT_NE(figures.out.find("anew/figures/spectra.png"), std::string::npos) << figures.out;  // of a log
+  EXPECT_EQ(run(temporary, "report anew").status, 0);
+  EXPECT_NE(bytes_of(temporary / "anew/report.html").find("<code>waverig evaluate done --out anew</code>"),
+            std::string::npos);
+  EXPECT_EQ(run(temporary, "sweep anew/campaign.toml --out again").status, 0);
+  EXPECT_EQ(bytes_of(temporary / "anew/runs/T04.00s_H050.0cm_r1.lcm"),
+            bytes_of(temporary / "again/runs/T04.00s_H050.0cm_r1.lcm"));
+  // Results of another campaign stay.
+  const std::string before = bytes_of(temporary / "other/results.json");
+  const Outcome taken = run(temporary, "evaluate anew --out other");
+  EXPECT_EQ(taken.status, 2);
+  EXPECT_NE(taken.err.find("--out other: other/campaign.toml is of another campaign"), std::string::npos) << taken.err;
+  EXPECT_EQ(bytes_of(temporary / "other/results.json"), before);
+}
+
 // Heave of someone else's program, of the right motion but on another clock, short, or upside down.
 TEST(Program, RemarksOnHeaveThatDoesNotFitTheRun) {
   const TemporaryDirectory temporary;
