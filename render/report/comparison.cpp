@@ -32,9 +32,12 @@ HtmlCell verdict_cell(Verdict verdict) {
 
 std::string who(const char* role, const evaluation::CampaignResults& results, const fs::path& directory) {
   return fmt::format(
-      "<li><strong>{}</strong>: \u201C{}\u201D, version {}, "
+      "<li><strong>{}</strong>: \u201C{}\u201D, version {}{}, "
       "seed {}, <code>{}</code></li>\n",
-      role, html_text(results.name), html_text(results.version), results.seed,
+      role, html_text(results.name), html_text(results.version),
+      results.judged_version.empty() ? ""
+                                     : fmt::format(", judged anew by {}", html_text(results.judged_version)),
+      results.seed,
       html_text(directory.filename().empty() ? directory.parent_path().filename().string()
                                              : directory.filename().string()));
 }

@@ -70,6 +70,17 @@ std::string height_answer(const MethodSummary& s) {
   return out + ".</li>\n";
 }
 
+// Whose methods stand here and which program judged them: where that was done anew, the command too, which
+// names the programs of others.
+std::string judge_line(const CampaignResults& results) {
+  const bool anew = !results.judged_version.empty();
+  std::string out =
+      fmt::format("<p>Methods: {}. Judged{} by waverig {}", html_text(joined(methods_of(results))),
+                  anew ? " anew" : "", html_text(anew ? results.judged_version : results.version));
+  if (anew) out += fmt::format(": <code>{}</code>", html_text(results.judged_command));
+  return out + ".</p>\n";
+}
+
 // sections: the page below.
 std::string intro(const CampaignResults& results, const std::string& sections) {
   std::string out = fmt::format(
@@ -82,6 +93,7 @@ std::string intro(const CampaignResults& results, const std::string& sections) {
   for (const MethodSummary& s : summaries_of(results)) out += height_answer(s);
   out += direction_answer(results);
   out += "</ul>\n";
+  out += judge_line(results);
   if (!results.complete) out += "<p class=\"worse\">This campaign is not complete.</p>\n";
   out += "<nav class=\"no-print\"><ul>";
   static constexpr std::array<std::pair<const char*, const char*>, 7> kSections = {

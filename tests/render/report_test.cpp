@@ -53,6 +53,23 @@ TEST(Report, AsksNothingFromOutside) {
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
 }
 
+TEST(Report, SaysWhoJudged) {
+  Example example;
+  example.results.version = "1.0+a";
+  const std::string itself = example.html();
+  EXPECT_NE(itself.find("<p>Methods: "), std::string::npos);
+  EXPECT_NE(itself.find(". Judged by waverig 1.0+a.</p>"), std::string::npos);
+  example.results.judged_version = "1.1+b";
+  example.results.judged_command = "waverig evaluate done --heave theirs=<dir>";
+  const std::string anew = example.html();
+  EXPECT_NE(
+      anew.find(". Judged anew by waverig 1.1+b: <code>waverig evaluate done --heave theirs=&lt;dir&gt;</code>.</p>"),
+      std::string::npos);
+  const std::string pair =
+      comparison_html(Example().results, example.folder.path(), example.results, example.folder.path());
+  EXPECT_NE(pair.find("version 1.0+a, judged anew by 1.1+b, seed"), std::string::npos);
+}
+
 // Its direction stands in a table of its own; it has no single waves that could be listed.
 TEST(Report, ListsNoSingleWavesOfAMethodThatGivesNone) {
   Example example;
