@@ -157,4 +157,23 @@ std::vector<CellResult> cells_of(std::span<const RunResult> runs) {
   return pooling.finish();
 }
 
+void tell_heave_scatter(std::span<CellResult> cells, std::span<const RunResult> runs) {
+  for (CellResult& cell : cells) {
+    double n = 0, sum = 0, squares = 0;  // of the mean squares of the runs
+    for (const RunResult& run : runs) {
+      if (run.period_s != cell.period_s || run.height_m != cell.height_m || run.method != cell.method ||
+          !std::isfinite(run.heave_rmse_m))
+        continue;
+      const double q = run.heave_rmse_m * run.heave_rmse_m, step = q - (n > 0 ? sum / n : 0.0);
+      n += 1;
+      sum += q;
+      squares += step * (q - sum / n);
+    }
+    cell.heave_runs = static_cast<int>(n);
+    // The rms is the root of their mean: half its relative uncertainty.
+    cell.heave_rmse_sigma_m =
+        n > 1 ? std::sqrt(squares / (n - 1) / n) / (2 * std::sqrt(sum / n)) : estimator::kUnknown;
+  }
+}
+
 }  // namespace waverig::evaluation

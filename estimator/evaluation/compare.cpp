@@ -30,7 +30,18 @@ double scatter_sigma_m(const CellResult& cell) {
   return waves > 1 ? scatter_m(cell) / std::sqrt(2.0 * static_cast<double>(waves - 1)) : estimator::kUnknown;
 }
 
-Difference judged(double baseline, double candidate, double sigma) {
+double heave_rmse_m(const CellResult& cell) { return is_sea(cell) ? cell.heave_rmse_m : estimator::kUnknown; }
+
+// What k = 2 is of infinitely many repeats, of few: Abramowitz and Stegun, eq. (26.7.5), at a normal deviate
+// of
+// 2. Degrees of freedom after Welch and Satterthwaite (GUM, eq. G.2b).
+double heave_coverage_factor(const CellResult& a, const CellResult& b) {
+  const double ua = std::pow(a.heave_rmse_sigma_m, 2), ub = std::pow(b.heave_rmse_sigma_m, 2);
+  const double x = (ua * ua / (a.heave_runs - 1) + ub * ub / (b.heave_runs - 1)) / std::pow(ua + ub, 2);
+  return kCoverageFactor + x * (2.5 + x * (3.0625 + x * (2.859 + x * 1.844)));
+}
+
+Difference judged(double baseline, double candidate, double sigma, double coverage_factor = kCoverageFactor) {
   Difference d{baseline, candidate, sigma, Verdict::kNotSignificant};
   const double change = candidate - baseline;
   if (std::isfinite(baseline) && !std::isfinite(candidate))
@@ -38,7 +49,7 @@ Difference judged(double baseline, double candidate, double sigma) {
   if (!std::isfinite(change) || change == 0) return d;
   if (std::isnan(sigma))
     d.verdict = Verdict::kUnknown;
-  else if (std::abs(change) > kCoverageFactor * sigma)
+  else if (std::abs(change) > coverage_factor * sigma)
     d.verdict = change < 0 ? Verdict::kBetter : Verdict::kWorse;
   return d;
 }
@@ -54,9 +65,14 @@ CellComparison compared(const CellResult& baseline, const CellResult& candidate)
                         std::hypot(scatter_sigma_m(baseline), scatter_sigma_m(candidate)));
   result.hm0_error_m = judged(hm0_error_m(baseline), hm0_error_m(candidate),
                               std::hypot(baseline.sea.sea.hm0_sigma_m, candidate.sea.sea.hm0_sigma_m));
+  result.heave_rmse_m = judged(heave_rmse_m(baseline), heave_rmse_m(candidate),
+                               std::hypot(baseline.heave_rmse_sigma_m, candidate.heave_rmse_sigma_m),
+                               heave_coverage_factor(baseline, candidate));
+  const Verdict of_heave = result.heave_rmse_m.verdict == Verdict::kUnknown ? Verdict::kNotSignificant
+                                                                            : result.heave_rmse_m.verdict;
   for (const Verdict verdict : {Verdict::kWorse, Verdict::kUnknown, Verdict::kBetter})
     if (result.mean_error_m.verdict == verdict || result.std_m.verdict == verdict ||
-        result.hm0_error_m.verdict == verdict) {
+        result.hm0_error_m.verdict == verdict || of_heave == verdict) {
       result.verdict = verdict;
       break;
     }
@@ -84,6 +100,7 @@ CellComparison alone(const CellResult& cell, Verdict verdict) {
   result.mean_error_m = of_one(mean_error_m(cell));
   result.std_m = of_one(scatter_m(cell));
   result.hm0_error_m = of_one(hm0_error_m(cell));
+  result.heave_rmse_m = of_one(heave_rmse_m(cell));
   result.verdict = verdict;
   return result;
 }
@@ -140,15 +157,16 @@ std::string comparison_csv(std::span<const CellComparison> cells) {
       "period_s,height_cm,method,verdict,baseline_mean_error_cm,mean_error_cm,mean_error_sigma_cm,mean_error_"
       "verdict,"
       "baseline_std_cm,std_cm,std_sigma_cm,std_verdict,"
-      "baseline_hm0_error_cm,hm0_error_cm,hm0_error_sigma_cm,hm0_error_verdict\n";
+      "baseline_hm0_error_cm,hm0_error_cm,hm0_error_sigma_cm,hm0_error_verdict,"
+      "baseline_heave_rms_cm,heave_rms_cm,heave_rms_sigma_cm,heave_rms_verdict\n";
   const auto columns = [](const Difference& d) {
     return fmt::format(",{},{},{},{}", number(d.baseline, 4), number(d.candidate, 4), number(d.sigma, 4),
                        name_of(d.verdict));
   };
   for (const CellComparison& c : cells)
-    text +=
-        fmt::format("{:g},{:g},{},{}{}{}{}\n", c.period_s, c.height_m / kCentimetre, c.method,
-                    name_of(c.verdict), columns(c.mean_error_m), columns(c.std_m), columns(c.hm0_error_m));
+    text += fmt::format("{:g},{:g},{},{}{}{}{}{}\n", c.period_s, c.height_m / kCentimetre, c.method,
+                        name_of(c.verdict), columns(c.mean_error_m), columns(c.std_m), columns(c.hm0_error_m),
+                        columns(c.heave_rmse_m));
   return text;
 }
 
@@ -156,21 +174,26 @@ std::string comparison_table(std::span<const CellComparison> cells) {
   const auto known = [](const Difference& d) {
     return std::isfinite(d.baseline) || std::isfinite(d.candidate);
   };
-  const bool seas =
-      std::any_of(cells.begin(), cells.end(), [&](const CellComparison& c) { return known(c.hm0_error_m); });
-  const auto hm0 = [seas](std::string_view cell) {
-    return seas ? fmt::format(" {:>20}", cell) : std::string();
+  // Columns of seas, where there are any.
+  const auto any = [&](Difference CellComparison::*of) {
+    return std::any_of(cells.begin(), cells.end(), [&](const CellComparison& c) { return known(c.*of); });
   };
-  std::string text = fmt::format("{:>8} {:>9}  {:<14} {:>20} {:>20}{}  {}\n", "period s", "height cm",
-                                 "method", "mean error cm", "std cm", hm0("Hm0 error cm"), "verdict");
+  const bool hm0s = any(&CellComparison::hm0_error_m), heaves = any(&CellComparison::heave_rmse_m);
+  const auto column = [](bool shown, std::string_view cell) {
+    return shown ? fmt::format(" {:>20}", cell) : std::string();
+  };
+  std::string text = fmt::format("{:>8} {:>9}  {:<14} {:>20} {:>20}{}{}  {}\n", "period s", "height cm",
+                                 "method", "mean error cm", "std cm", column(hm0s, "Hm0 error cm"),
+                                 column(heaves, "heave rms cm"), "verdict");
   const auto change = [&](const Difference& d) {
     return known(d) ? fmt::format("{} -> {}", number(d.baseline, 3), number(d.candidate, 3))
                     : std::string("-");
   };
   for (const CellComparison& c : cells)
-    text += fmt::format("{:8.1f} {:9.1f}  {:<14} {:>20} {:>20}{}  {}\n", c.period_s, c.height_m / kCentimetre,
-                        c.method, change(c.mean_error_m), change(c.std_m), hm0(change(c.hm0_error_m)),
-                        name_of(c.verdict));
+    text +=
+        fmt::format("{:8.1f} {:9.1f}  {:<14} {:>20} {:>20}{}{}  {}\n", c.period_s, c.height_m / kCentimetre,
+                    c.method, change(c.mean_error_m), change(c.std_m), column(hm0s, change(c.hm0_error_m)),
+                    column(heaves, change(c.heave_rmse_m)), name_of(c.verdict));
   return text;
 }
 

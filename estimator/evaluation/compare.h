@@ -39,12 +39,16 @@ struct CellComparison {
   // |Hm0 - true Hm0| of a sea, where the method tells one of waves enough. Its uncertainty: what the method
   // states.
   Difference hm0_error_m{};
+  // Rms of the heave's error on a sea. Its uncertainty: the scatter over the repeats, of which each campaign
+  // needs two; where one has fewer it is shown and does not count.
+  Difference heave_rmse_m{};
   Verdict verdict =
       Verdict::kNotSignificant;  // worse if any is, else unknown if any is, else better if any is
 };
 
-// A difference is significant where it exceeds two standard uncertainties (k = 2). Cells are matched by
-// period, height and method, in the order of the baseline, then what only the candidate has.
+// A difference is significant where it exceeds two standard uncertainties (k = 2), of heave, whose repeats
+// are few, as many as leave no more to chance (Student; GUM, table G.2). Cells are matched by period, height
+// and method, in the order of the baseline, then what only the candidate has.
 std::vector<CellComparison> compare_cells(std::span<const CellResult> baseline,
                                           std::span<const CellResult> candidate);
 

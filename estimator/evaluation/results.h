@@ -94,8 +94,12 @@ struct CellResult {
   std::string method;
   Motion motion = Motion::kUnknown;
   HeightStatistics statistics;
-  double heave_rmse_m = estimator::kUnknown;   // root of the mean square over the repeats
-  double heave_bound_m = estimator::kUnknown;  // likewise
+  double heave_rmse_m = estimator::kUnknown;  // root of the mean square over the repeats
+  // Of heave_rmse_m, k = 1, from its scatter over so many repeats; unknown of fewer than two. In no file:
+  // told anew from the runs where results are read.
+  double heave_rmse_sigma_m = estimator::kUnknown;
+  int heave_runs = 0;
+  double heave_bound_m = estimator::kUnknown;  // root of the mean square
   double true_hm0_m = estimator::kUnknown;     // this and the following: means over the repeats
   double heave_gain = estimator::kUnknown;
   double heave_lag_s = estimator::kUnknown;

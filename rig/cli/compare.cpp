@@ -40,10 +40,10 @@ void add_compare(CLI::App& app, Command& chosen) {
   command->add_option("directory", arguments->candidate, "Results directory to judge")->required();
   command->add_option("--csv", arguments->csv, "Write the comparison into this file too");
   command->footer(
-      "A cell is better or worse where mean error, standard deviation or, of a sea, the error of Hm0 differ "
-      "by\n"
-      "more than two standard uncertainties of the difference; a method that states none is not judged by "
-      "it.\n"
+      "A cell is better or worse where mean error, standard deviation or, of a sea, the error of Hm0 or the\n"
+      "rms of the heave's error differ by more than two standard uncertainties of the difference; a method\n"
+      "that states none is not judged by it. That of the heave is told by its repeats, two at least in each\n"
+      "campaign, with Student's factor for few.\n"
       "Exit status 1 where any cell is worse.\n"
       "Example:\n  waverig compare results/before results/after --csv comparison.csv");
   command->callback([arguments, &chosen] { chosen = [arguments] { return compare(*arguments); }; });

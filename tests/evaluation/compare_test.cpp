@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <span>
+
+#include "estimator/evaluation/cells.h"
 #include "lcmtypes/flags.h"
 #include "motion/kinematics/random.h"
 
@@ -96,6 +100,70 @@ TEST(Compare, JudgesHm0OfASeaOfWavesEnough) {
   EXPECT_EQ(compared(a, b).verdict, Verdict::kNotSignificant);
   const CellResult regular = cell(0.6, 0.01, 0.002);
   EXPECT_EQ(comparison_table(std::vector{compared(regular, regular)}).find("Hm0"), std::string::npos);
+}
+
+// Repeats of one sea, whose heave is missed by these rms.
+struct Repeats {
+  CellResult cell;
+  std::vector<RunResult> runs;
+  explicit Repeats(const std::vector<double>& rmse_m) : cell(evaluation::cell(0.6, 0.2, 0.002)) {
+    cell.motion = Motion::kSea;
+    cell.statistics.rmse_m = 0.01;
+    double sum = 0;
+    for (const double rmse : rmse_m) {
+      RunResult run;
+      run.period_s = cell.period_s;
+      run.height_m = cell.height_m;
+      run.method = cell.method;
+      run.heave_rmse_m = rmse;
+      runs.push_back(run);
+      sum += rmse * rmse;
+    }
+    cell.heave_rmse_m = std::sqrt(sum / static_cast<double>(rmse_m.size()));
+    tell_heave_scatter(std::span(&cell, 1), runs);
+  }
+};
+
+TEST(Compare, JudgesHeaveOfASeaByItsRepeats) {
+  const Repeats a({0.010, 0.011, 0.012}), b({0.012, 0.013, 0.014}), c({0.020, 0.021, 0.022});
+  EXPECT_NEAR(a.cell.heave_rmse_sigma_m, 0.001 / std::sqrt(3.0), 5e-6);
+  // 2 mm are 2.4 standard uncertainties; of three repeats each it takes 2.9.
+  EXPECT_EQ(compared(a.cell, b.cell).verdict, Verdict::kNotSignificant);
+  EXPECT_EQ(compared(a.cell, c.cell).heave_rmse_m.verdict, Verdict::kWorse);
+  EXPECT_EQ(compared(a.cell, c.cell).verdict, Verdict::kWorse);
+  EXPECT_EQ(compared(c.cell, a.cell).verdict, Verdict::kBetter);
+  const std::vector shown{compared(a.cell, c.cell)};
+  EXPECT_NE(comparison_table(shown).find("heave rms cm"), std::string::npos) << comparison_table(shown);
+  EXPECT_NE(comparison_csv(shown).find(",heave_rms_verdict\n"), std::string::npos) << comparison_csv(shown);
+  EXPECT_NE(comparison_csv(shown).find(",worse\n"), std::string::npos) << comparison_csv(shown);
+}
+
+// One run says nothing of what the next would give: the others decide, as they did without it.
+TEST(Compare, DoesNotJudgeHeaveOfASingleRun) {
+  const Repeats one({0.010}), three({0.020, 0.021, 0.022});
+  const CellComparison c = compared(one.cell, three.cell);
+  EXPECT_EQ(c.heave_rmse_m.verdict, Verdict::kUnknown);
+  EXPECT_EQ(c.heave_rmse_m.baseline, 0.010);
+  EXPECT_EQ(c.verdict, Verdict::kNotSignificant);
+}
+
+// Of one quality, by few repeats: no more than one in 22, as k = 2 promises; of two repeats fewer (Welch).
+TEST(Compare, SeldomCriesWolfOverHeave) {
+  RandomStream random(4, "heave");
+  for (const int runs : {2, 3, 5}) {
+    int wolves = 0;
+    const int cells = 10000;
+    for (int i = 0; i < cells; ++i) {
+      const auto drawn = [&] {
+        std::vector<double> rmse_m;
+        for (int k = 0; k < runs; ++k) rmse_m.push_back(0.01 * (1 + random.gaussian(0.1)));
+        return Repeats(rmse_m).cell;
+      };
+      wolves += compared(drawn(), drawn()).verdict != Verdict::kNotSignificant ? 1 : 0;
+    }
+    EXPECT_LT(wolves, 0.055 * cells) << runs;
+    EXPECT_GT(wolves, 0.015 * cells) << runs;
+  }
 }
 
 // Of a program that states no uncertainty nothing can be said but that it differs.
