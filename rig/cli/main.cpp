@@ -28,15 +28,20 @@ int fail(const std::filesystem::filesystem_error& error) {
   return fail(machine ? kAnswerIsNo : kBadInput, sentence.c_str());
 }
 
-// CLI11 tells of a missing command where the one given is unknown.
+// CLI11 tells of a missing command where the one given is unknown: commands of commands too.
 void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  std::string known;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->check_name(argv[1])) return;
-    known += (known.empty() ? "" : ", ") + command->get_name();
+  const CLI::App* of = &app;
+  for (int i = 1; i < argc && argv[i][0] != '-' && !of->get_subcommands({}).empty(); ++i) {
+    const CLI::App* found = nullptr;
+    std::string known;
+    for (const CLI::App* command : of->get_subcommands({})) {
+      if (command->check_name(argv[i])) found = command;
+      known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+    if (found == nullptr)
+      throw waverig::UserError(std::string("\"") + argv[i] + "\" is no command; expected one of " + known);
+    of = found;
   }
-  throw waverig::UserError(std::string("\"") + argv[1] + "\" is no command; expected one of " + known);
 }
 
 }  // namespace

@@ -107,6 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
     BadInput, ProgramRefuses,
     ::testing::Values(
         BadCall{"NoCommand", "", "subcommand"}, BadCall{"UnknownCommand", "swep x", "swep"},
+        BadCall{"UnknownCommandOfACommand", "node estimater", "\"estimater\" is no command; expected one of rig-sim, motion"},
         BadCall{"NoOut", "sweep unknown_key.toml", "--out"},
         BadCall{"MissingFile", "sweep nowhere.toml --out out", "nowhere.toml"},
         BadCall{"NotToml", "sweep no.toml --out out", "no.toml:1"},
