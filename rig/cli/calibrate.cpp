@@ -76,6 +76,7 @@ std::string table_of(const estimator::SensorCalibration& calibration) {
 }
 
 int calibrate_accelerometer(const AccelerometerArguments& arguments) {
+  refuse_to_overwrite(arguments.recording, arguments.out);
   const auto samples = all_of(uncalibrated_samples_of(arguments.recording));
   estimator::SensorCalibration calibration;
   try {
@@ -104,6 +105,7 @@ void print_way(const char* name, const estimator::CompassCalibration& c, bool ch
 }
 
 int calibrate_compass(const CompassArguments& arguments) {
+  refuse_to_overwrite(arguments.recording, arguments.out);
   estimator::SensorCalibration calibration;
   if (!arguments.base.empty()) calibration = estimator::load_calibration(arguments.base);
   const estimator::AccelerometerCorrection correct(calibration.accelerometer);

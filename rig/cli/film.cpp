@@ -7,13 +7,18 @@
 #include <memory>
 
 #include "estimator/evaluation/run_record.h"
+#include "lcmtypes/error.h"
 #include "render/scene/film.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/number_checks.h"
+#include "rig/cli/recording.h"
+#include "rig/cli/signals.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct FilmArguments {
   std::string log, out, method;
@@ -21,7 +26,19 @@ struct FilmArguments {
   bool light = false;
 };
 
+// The film under another name until it is whole.
+struct Partial {
+  fs::path path;
+  ~Partial() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+};
+
 int film(const FilmArguments& arguments) {
+  refuse_to_overwrite(arguments.log, arguments.out);
+  if (fs::is_directory(arguments.out))
+    throw UserError(fmt::format("--out {}: is a folder; expected an MP4 file", arguments.out));
   const evaluation::RunRecord run = evaluation::load_run(arguments.log);
   const render::RigMotion motion(run, arguments.method);
   render::FilmSettings settings = arguments.film;
@@ -29,9 +46,13 @@ int film(const FilmArguments& arguments) {
   settings.provenance.version = kVersion;
   settings.provenance.command = fmt::format("waverig film {}", arguments.log);
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  render::write_film(motion, settings, arguments.out, [terminal](std::size_t done, std::size_t all) {
+  const Partial partial{fmt::format("{}.{}.partial", arguments.out, ::getpid())};
+  keep_signals();
+  render::write_film(motion, settings, partial.path, [terminal](std::size_t done, std::size_t all) {
+    end_if_told();
     if (terminal) fmt::print(stderr, "\r\033[K{} of {} frames", done, all);
   });
+  fs::rename(partial.path, arguments.out);
   if (terminal) fmt::print(stderr, "\r\033[K");
   fmt::print("{}\n", arguments.out);
   return 0;

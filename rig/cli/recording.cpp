@@ -82,6 +82,12 @@ void check_time_unit(const std::string& file, double usual_interval_s) {
                     file, usual_interval_s, kShortest_s, kLongest_s));
 }
 
+void refuse_to_overwrite(const fs::path& recording, const fs::path& out) {
+  std::error_code ignored;  // of an output that is not there
+  if (fs::equivalent(recording, out, ignored))
+    throw UserError(fmt::format("--out {}: is the recording itself; expected another file", out.string()));
+}
+
 std::vector<ImuSample> all_of(const SampleSource& source) {
   std::vector<ImuSample> samples;
   for (ImuSample sample; source(sample);) samples.push_back(sample);

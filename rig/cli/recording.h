@@ -24,6 +24,9 @@ SampleSource uncalibrated_samples_of(const std::filesystem::path& path);
 // not known.
 void check_time_unit(const std::string& file, double usual_interval_s);
 
+// Throws UserError where --out names the recording itself.
+void refuse_to_overwrite(const std::filesystem::path& recording, const std::filesystem::path& out);
+
 std::vector<estimator::ImuSample> all_of(const SampleSource& source);
 
 }  // namespace waverig::cli

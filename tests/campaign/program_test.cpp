@@ -134,6 +134,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"SeedBelowZero", "sweep tiny.toml --seed -1 --out out", "--seed: -1: expected a whole number from 0"},
         BadCall{"SeedOfAnAnalysis", "analyse compass --seed -1 --out out", "--seed: -1: expected a whole number from 0"},
         BadCall{"OutIsAFile", "estimate level.csv --out level.csv", "--out level.csv: "},
+        BadCall{"OutIsTheRecording", "calibrate accelerometer level.csv --out ./level.csv", "--out ./level.csv: is the recording itself"},
+        BadCall{"OutIsTheLog", "film truncated.lcm --out truncated.lcm", "--out truncated.lcm: is the recording itself"},
+        BadCall{"FilmIsAFolder", "film truncated.lcm --out .", "--out .: is a folder; expected an MP4 file"},
         BadCall{"NotSixPositions", "calibrate accelerometer level.csv --out out", "level.csv: six-position calibration: x up held still for 0 s"},
         BadCall{"NoMagnetometer", "calibrate compass level.csv --out out", "level.csv: no magnetic field"},
         BadCall{"NoCalibration", "estimate level.csv --calibration no.toml --out out", "no.toml"},
@@ -445,6 +448,19 @@ TEST(Program, LeavesNothingHalfWhereAnEstimateIsInterrupted) {
   const Outcome outcome = ended_early(temporary, "estimate long.csv --method realtime --out out", "out/heave.csv.*");
   EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
   EXPECT_TRUE(std::filesystem::is_empty(temporary / "out"));
+}
+
+TEST(Program, KeepsAnEarlierFilmWhereTheNextIsInterrupted) {
+  const TemporaryDirectory temporary;
+  temporary.write("long.toml", "name = \"long\"\n[sweep]\nperiods_s = [4.0]\nheights_cm = [50.0]\nduration_s = 600.0\nrepeats = 1\n");
+  ASSERT_EQ(run(temporary, "sweep long.toml --out done").status, 0);
+  temporary.write("rig.mp4", "the film before");
+  const Outcome outcome = ended_early(
+      temporary, "film done/runs/T04.00s_H050.0cm_r1.lcm --seconds 600 --out rig.mp4", "rig.mp4.*.partial");
+  EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
+  EXPECT_EQ(bytes_of(temporary / "rig.mp4"), "the film before");
+  for (const auto& file : std::filesystem::directory_iterator(temporary.path()))
+    EXPECT_NE(file.path().extension(), ".partial") << file.path();
 }
 
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
