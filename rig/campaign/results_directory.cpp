@@ -42,7 +42,11 @@ void take_file(const fs::path& from, const fs::path& to) {
   fs::remove(partial);
   std::error_code error;
   if (from.extension() == ".lcm") fs::create_hard_link(from, partial, error);
-  if (!fs::exists(partial)) fs::copy_file(from, partial);
+  if (!fs::exists(partial) && !fs::copy_file(from, partial, error)) {
+    const std::string reason = error.message();
+    fs::remove(partial, error);
+    throw std::runtime_error(fmt::format("{}: not everything could be written: {}", to.string(), reason));
+  }
   fs::rename(partial, to);
 }
 
