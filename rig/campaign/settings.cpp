@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 #include "lcmtypes/error.h"
 #include "motion/kinematics/frames.h"
@@ -26,13 +28,26 @@ void read_sea(TomlTable sea, SweepSettings& s) {
   s.buoy.tilt_period_s = sea.number("tilt_period_s", s.buoy.tilt_period_s, {0, 3600});
 }
 
+// Runs are named by these values: of one that came twice the waves would be counted twice, or two runs would
+// write one log.
+void refuse_alike(const TomlTable& sweep, std::string_view key, const std::vector<double>& values,
+                  int decimals) {
+  std::set<std::string> names;
+  for (const double value : values)
+    if (!names.insert(fmt::format("{:.{}f}", value, decimals)).second)
+      sweep.refuse(key, fmt::format("each value once, {:g} apart at least", std::pow(10, -decimals)));
+}
+
 SweepSettings read_sweep(TomlTable sweep) {
   SweepSettings s;
   const std::string motion = sweep.choice("motion", "arm", {"arm", "jonswap", "pierson-moskowitz"});
   s.mover = motion == "arm" ? Mover::kArm : Mover::kSea;
-  s.sea.shape = motion == "pierson-moskowitz" ? motion::SpectrumShape::kPiersonMoskowitz : motion::SpectrumShape::kJonswap;
+  s.sea.shape = motion == "pierson-moskowitz" ? motion::SpectrumShape::kPiersonMoskowitz
+                                              : motion::SpectrumShape::kJonswap;
   const auto periods = sweep.numbers("periods_s", std::nullopt, {0.5, 60});
   const auto heights = sweep.numbers("heights_cm", std::nullopt, {0.1, 2000});
+  refuse_alike(sweep, "periods_s", periods, 2);
+  refuse_alike(sweep, "heights_cm", heights, 1);
   for (const double period : periods)
     for (const double height : heights) s.settings.push_back({period, height * kCentimetre});
   s.settings_place = sweep.place_of("heights_cm");
@@ -47,8 +62,9 @@ SweepSettings read_sweep(TomlTable sweep) {
   s.profile.rate_modulation = sweep.number("rate_modulation", 0, {0, 0.5});
   s.profile.modulation_cycles = static_cast<int>(sweep.integer("modulation_cycles", 0, {0, 1000}));
   s.profile.rate_drift = sweep.number("rate_drift", 0, {-0.5, 0.5});
-  s.outside = sweep.choice("outside_envelope", "refuse", {"refuse", "skip"}) == "skip" ? OutsideEnvelope::kSkip
-                                                                                      : OutsideEnvelope::kRefuse;
+  s.outside = sweep.choice("outside_envelope", "refuse", {"refuse", "skip"}) == "skip"
+                  ? OutsideEnvelope::kSkip
+                  : OutsideEnvelope::kRefuse;
   return s;
 }
 
@@ -109,7 +125,7 @@ motion::EnvelopeSettings read_envelope(TomlTable rig) {
   s.max_radius_m = rig.number("max_radius_m", s.max_radius_m, {s.min_radius_m, 100});
   s.max_centripetal_mps2 = rig.number("max_centripetal_mps2", s.max_centripetal_mps2, {0, 1000});
   s.breaking = rig.choice("breaking_waves", "warn", {"warn", "refuse"}) == "warn" ? motion::Verdict::kWarn
-                                                                                    : motion::Verdict::kRefuse;
+                                                                                  : motion::Verdict::kRefuse;
   TomlTable axis = rig.table("axis");
   s.limits.rate_radps = axis.number("max_rate_radps", s.limits.rate_radps, {0.01, 1000});
   s.limits.accel_radps2 = axis.number("max_accel_radps2", s.limits.accel_radps2, {0.01, 10000});
@@ -132,16 +148,21 @@ SensorChoice read_sensor(TomlTable sensor) {
 std::optional<FrontEndChoice> read_front_end(TomlTable& calibration) {
   if (!calibration.has("front_end")) return std::nullopt;
   const std::string file = calibration.text("front_end", {}), place = calibration.place_of("front_end");
-  const std::filesystem::path beside = std::filesystem::path(place.substr(0, place.rfind(':'))).parent_path() / file;
+  const std::filesystem::path beside =
+      std::filesystem::path(place.substr(0, place.rfind(':'))).parent_path() / file;
   FrontEndChoice choice;
-  choice.calibration = estimator::load_front_end_calibration(std::filesystem::exists(beside) ? beside : std::filesystem::path(file));
-  const std::vector<std::string> channels =
-      calibration.texts("front_end_channels", std::vector<std::string>(choice.channels.begin(), choice.channels.end()));
-  if (channels.size() != choice.channels.size()) calibration.refuse("front_end_channels", "three channels, of x, y and z");
+  choice.calibration = estimator::load_front_end_calibration(
+      std::filesystem::exists(beside) ? beside : std::filesystem::path(file));
+  const std::vector<std::string> channels = calibration.texts(
+      "front_end_channels", std::vector<std::string>(choice.channels.begin(), choice.channels.end()));
+  if (channels.size() != choice.channels.size())
+    calibration.refuse("front_end_channels", "three channels, of x, y and z");
   std::string known;
-  for (const estimator::FrontEndChannel& c : choice.calibration.channels) known += (known.empty() ? "" : ", ") + c.name;
+  for (const estimator::FrontEndChannel& c : choice.calibration.channels)
+    known += (known.empty() ? "" : ", ") + c.name;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (std::ranges::find(choice.calibration.channels, channels[i], &estimator::FrontEndChannel::name) == choice.calibration.channels.end())
+    if (std::ranges::find(choice.calibration.channels, channels[i], &estimator::FrontEndChannel::name) ==
+        choice.calibration.channels.end())
       calibration.refuse("front_end_channels", "channels among " + known);
     choice.channels[i] = channels[i];
   }
@@ -154,7 +175,8 @@ CalibrationRunSettings read_calibration(TomlTable& calibration, bool& enabled) {
   enabled = calibration.boolean("enabled", true);
   s.settle_s = calibration.number("settle_s", s.settle_s, {0, 600});
   s.record_s = calibration.number("seconds_per_position", s.record_s, {2 * s.batch_s, 3600});
-  s.fixture_sigma_rad = calibration.number("fixture_sigma_deg", s.fixture_sigma_rad / kDegree, {0, 5}) * kDegree;
+  s.fixture_sigma_rad =
+      calibration.number("fixture_sigma_deg", s.fixture_sigma_rad / kDegree, {0, 5}) * kDegree;
   s.front_end = read_front_end(calibration);
   return s;
 }
@@ -185,6 +207,8 @@ Campaign read_campaign(TomlFile file, const std::uint64_t* seed_override) {
     if (std::find(known.begin(), known.end(), method) == known.end())
       root.refuse("methods", fmt::format("names among \"{}\"", fmt::join(known, "\", \"")));
   }
+  if (std::set(s.methods.begin(), s.methods.end()).size() < s.methods.size())
+    root.refuse("methods", "each name once");
   s.sweep = read_sweep(root.table("sweep"));
   if (s.sweep.mover == Mover::kSea) read_sea(root.table("sea"), s.sweep);
   TomlTable place = root.table("place");

@@ -81,6 +81,9 @@ TEST_P(ProgramRefuses, WithExitTwoAndOneLine) {
   temporary.write("wrong_type.toml", std::string(kTiny) + "rest_before_s = \"long\"\n");
   temporary.write("too_high.toml", "name = \"t\"\n[sweep]\nperiods_s = [6.0]\nheights_cm = [900.0]\n");
   temporary.write("no.toml", "name = \n");
+  temporary.write("twice.toml", "name = \"t\"\n[sweep]\nperiods_s = [6.0, 6.0]\nheights_cm = [60.0]\n");
+  temporary.write("methods_twice.toml",
+                  "name = \"t\"\nmethods = [\"harmonic\", \"harmonic\"]\n[sweep]\nperiods_s = [6.0]\nheights_cm = [60.0]\n");
   temporary.write("broken_row.csv", "utime,ax,ay,az,gx,gy,gz\n0,0,0,-9.8,0,0,0\n10000,0,0,x,0,0,0\n");
   temporary.write("level.csv", "utime,ax,ay,az,gx,gy,gz\n0,0,0,-9.8,0,0,0\n10000,0,0,-9.8,0,0,0\n");
   temporary.write("no_header.csv", "1,2,3\n");
@@ -114,6 +117,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"UnknownKey", "sweep unknown_key.toml --out out", "unknown_key.toml:1: colour = 1: unknown key"},
         BadCall{"WrongType", "sweep wrong_type.toml --out out", "wrong_type.toml:8: sweep.rest_before_s = 'long'"},
         BadCall{"TooHigh", "sweep too_high.toml --out out", "too_high.toml:4: sweep.heights_cm = 900"},
+        BadCall{"PeriodTwice", "sweep twice.toml --out out", "twice.toml:3: sweep.periods_s = [ 6.0, 6.0 ]: expected each value once, 0.01 apart at least"},
+        BadCall{"MethodTwice", "sweep methods_twice.toml --out out", "methods_twice.toml:2: methods = [ 'harmonic', 'harmonic' ]: expected each name once"},
         BadCall{"BadShard", "sweep too_high.toml --out out --shard 3/2", "--shard 3/2"},
         BadCall{"BrokenRow", "estimate broken_row.csv --out out", "broken_row.csv, line 3, column az: 'x'"},
         BadCall{"TimesInMilliseconds", "estimate milliseconds.csv --out out", "milliseconds.csv: column utime: by its times a row every 1e-05 s; expected microseconds"},
