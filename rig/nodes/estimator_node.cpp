@@ -16,15 +16,15 @@ EstimatorNode::EstimatorNode(Bus& bus, std::string method, const estimator::Meth
       wave_channel_(channel::of_method(channel::kWavePrefix, name_)),
       sea_channel_(channel::of_method(channel::kSeaPrefix, name_)),
       settings_(settings) {
-  estimator::make_method(name_, settings_);   // an unknown name is refused now, not at the first record
+  estimator::make_method(name_, settings_);  // an unknown name is refused now, not at the first record
   bus_.subscribe<imu_t>(channel::kImu, [this](const imu_t& m) { take(m); });
   bus_.subscribe<record_t>(channel::kRecord, [this](const record_t& m) {
     m.action == static_cast<std::int32_t>(RecordAction::kBegin) ? begin() : end();
   });
 }
 
-// The acquisition hears of a record a moment later than it is said and counts its samples anew from then on: what
-// still goes on with the old count lies before the record.
+// The acquisition hears of a record a moment later than it is said and counts its samples anew from then on:
+// what still goes on with the old count lies before the record.
 void EstimatorNode::take(const imu_t& m) {
   const std::int64_t missing = count_.missing_before(m.seq);
   if (!method_ || (awaiting_ && !count_.anew())) return;
@@ -48,7 +48,9 @@ void EstimatorNode::end() {
   method_.reset();
   ++records_;
 }
-void EstimatorNode::heave(const estimator::HeaveSample& sample) { bus_.publish(heave_channel_, message_of(sample)); }
+void EstimatorNode::heave(const estimator::HeaveSample& sample) {
+  bus_.publish(heave_channel_, message_of(sample));
+}
 void EstimatorNode::wave(const estimator::Wave& wave) { bus_.publish(wave_channel_, message_of(wave)); }
 void EstimatorNode::sea(const estimator::SeaState& sea) { bus_.publish(sea_channel_, message_of(sea)); }
 

@@ -19,10 +19,12 @@ class EstimatorNode : private estimator::Output {
   EstimatorNode(Bus& bus, std::string method, const estimator::MethodSettings& settings);
 
   bool recording() const { return method_ != nullptr; }
-  std::int64_t records() const { return records_; }             // that have ended
-  std::int64_t samples() const { return watch_.samples(); }     // of all records
-  const SampleWatch& watch() const { return watch_; }           // of all records: what the method leaves out
-  std::int64_t samples_missing() const { return samples_missing_; }   // of all records; the next one carries flag::kGap
+  std::int64_t records() const { return records_; }          // that have ended
+  std::int64_t samples() const { return watch_.samples(); }  // of all records
+  const SampleWatch& watch() const { return watch_; }        // of all records: what the method leaves out
+  std::int64_t samples_missing() const {
+    return samples_missing_;
+  }  // of all records; the next one carries flag::kGap
 
  private:
   void take(const imu_t& m);
@@ -35,9 +37,9 @@ class EstimatorNode : private estimator::Output {
   Bus& bus_;
   std::string name_, heave_channel_, wave_channel_, sea_channel_;
   estimator::MethodSettings settings_;
-  std::unique_ptr<estimator::Method> method_;   // of the record that runs; none between records
+  std::unique_ptr<estimator::Method> method_;  // of the record that runs; none between records
   SequenceWatch count_;
-  bool awaiting_ = false;                       // the record's first sample
+  bool awaiting_ = false;  // the record's first sample
   std::int64_t records_ = 0, samples_missing_ = 0;
   SampleWatch watch_;
 };

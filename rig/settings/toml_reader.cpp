@@ -24,13 +24,16 @@ std::string shown(const toml::node& node) {
 }
 
 std::string shown(const Range& range, std::string_view kind = "number") {
-  if (std::isinf(range.low) && std::isinf(range.high)) return fmt::format("a {}{}", kind == "number" ? "finite " : "", kind);
+  if (std::isinf(range.low) && std::isinf(range.high))
+    return fmt::format("a {}{}", kind == "number" ? "finite " : "", kind);
   if (std::isinf(range.high)) return fmt::format("a {} of at least {}", kind, range.low);
   if (std::isinf(range.low)) return fmt::format("a {} of at most {}", kind, range.high);
   return fmt::format("a {} from {} to {}", kind, range.low, range.high);
 }
 
-bool inside(double value, const Range& range) { return std::isfinite(value) && value >= range.low && value <= range.high; }
+bool inside(double value, const Range& range) {
+  return std::isfinite(value) && value >= range.low && value <= range.high;
+}
 
 // How many letters apart two keys are (Levenshtein): a key that is missing was perhaps only misspelt.
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -39,7 +42,8 @@ std::size_t distance(std::string_view a, std::string_view b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     std::size_t diagonal = std::exchange(row[0], i + 1);
     for (std::size_t j = 0; j < b.size(); ++j)
-      diagonal = std::exchange(row[j + 1], std::min({diagonal + (a[i] == b[j] ? 0U : 1U), row[j] + 1, row[j + 1] + 1}));
+      diagonal = std::exchange(row[j + 1],
+                               std::min({diagonal + (a[i] == b[j] ? 0U : 1U), row[j] + 1, row[j + 1] + 1}));
   }
   return row.back();
 }
@@ -55,7 +59,9 @@ std::string missing(const toml::table* table, std::string_view key, std::string_
 
 }  // namespace
 
-bool TomlTable::has(std::string_view key) const { return shared_->node != nullptr && shared_->node->contains(key); }
+bool TomlTable::has(std::string_view key) const {
+  return shared_->node != nullptr && shared_->node->contains(key);
+}
 
 std::vector<std::string> TomlTable::keys() const {
   std::vector<std::string> names;
@@ -78,8 +84,11 @@ std::string TomlTable::place_of(std::string_view key) const {
 
 void TomlTable::refuse(std::string_view key, std::string_view expected) const {
   const toml::node* node = shared_->node == nullptr ? nullptr : shared_->node->get(key);
-  if (node == nullptr) throw UserError(fmt::format("{}: {} {}", place_of(key), name_of(key), missing(shared_->node, key, expected)));
-  throw UserError(fmt::format("{}: {} = {}: expected {}", place_of(key), name_of(key), shown(*node), expected));
+  if (node == nullptr)
+    throw UserError(
+        fmt::format("{}: {} {}", place_of(key), name_of(key), missing(shared_->node, key, expected)));
+  throw UserError(
+      fmt::format("{}: {} = {}: expected {}", place_of(key), name_of(key), shown(*node), expected));
 }
 
 namespace {
@@ -148,7 +157,8 @@ std::string TomlTable::choice(std::string_view key, std::optional<std::string> f
   refuse(key, fmt::format("one of \"{}\"", fmt::join(allowed, "\", \"")));
 }
 
-std::vector<double> TomlTable::numbers(std::string_view key, std::optional<std::vector<double>> fallback, Range range) {
+std::vector<double> TomlTable::numbers(std::string_view key, std::optional<std::vector<double>> fallback,
+                                       Range range) {
   const toml::node* node = find(key);
   const auto expected = [&] { return "a list with at least one number, each " + shown(range); };
   if (node == nullptr && fallback) return resolve(key, *fallback);
@@ -162,7 +172,8 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::optional<std::
   return resolve(key, values);
 }
 
-std::vector<std::string> TomlTable::texts(std::string_view key, std::optional<std::vector<std::string>> fallback) {
+std::vector<std::string> TomlTable::texts(std::string_view key,
+                                          std::optional<std::vector<std::string>> fallback) {
   const toml::node* node = find(key);
   const char* expected = "a list with at least one text in quotes";
   if (node == nullptr && fallback) return resolve(key, *fallback);
@@ -238,7 +249,8 @@ TomlFile::TomlFile(std::string_view text, const std::string& name) {
   try {
     document_ = std::make_unique<toml::table>(toml::parse(text, name));
   } catch (const toml::parse_error& error) {
-    throw UserError(fmt::format("{}:{}: {}; expected TOML", name, error.source().begin.line, error.description()));
+    throw UserError(
+        fmt::format("{}:{}: {}; expected TOML", name, error.source().begin.line, error.description()));
   }
   resolved_ = std::make_unique<toml::table>();
   auto shared = std::make_shared<TomlTable::Shared>();
