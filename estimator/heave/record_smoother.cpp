@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kOrder = 48;    // of the autoregression: 24 s
 constexpr int kBlock = 1024;  // fine nodes of a periodogram: 256 s
+constexpr double kAbout = 2;  // standard deviations
 
 // One piece without a gap, seen from the nodes.
 struct Piece {
@@ -26,15 +27,33 @@ struct Piece {
   std::vector<std::size_t> node;  // that node's number
 };
 
-Piece integrate(const Record& record, const std::vector<AttitudeSample>& attitude, std::size_t begin,
-                std::size_t end, double interval_s, double gravity_mps2) {
+// When an offset changed is not known to the instant.
+double disturbance_m2ps3(const OffsetChange& change, std::int64_t utime) {
+  const bool about =
+      std::abs(static_cast<double>(utime - change.utime)) * kMicrosecond < kAbout * change.sigma_s;
+  return about ? square(change.mps2) * change.sigma_s : 0.0;
+}
+
+// Takes them off the vertical acceleration.
+void correct(const std::vector<OffsetChange>& changes, std::span<AttitudeSample> attitude) {
+  for (const OffsetChange& change : changes)
+    for (AttitudeSample& a : attitude)
+      if (a.utime >= change.utime) a.a_N.z() += change.mps2;
+}
+
+Piece integrate(const Record& record, const SmoothedRecord& smoothed, std::size_t begin, std::size_t end,
+                double interval_s, double gravity_mps2) {
   Piece piece{begin, end, {}, {}, {}, {}, {}};
   PathIntegrator integrator(interval_s);
   MeanDisturbance disturbance;
   for (std::size_t i = begin; i < end; ++i) {
     const ImuSample& sample = record.samples()[i];
-    const double a_up = -attitude[i].a_N.z();
-    disturbance.add(disturbance_m2ps3(attitude[i], sample.flags, gravity_mps2));
+    const AttitudeSample& attitude = smoothed.attitude[i];
+    const double a_up = -attitude.a_N.z();
+    double density_m2ps3 = disturbance_m2ps3(attitude, sample.flags, gravity_mps2);
+    for (const OffsetChange& change : smoothed.offset_changes)
+      density_m2ps3 += disturbance_m2ps3(change, sample.utime);
+    disturbance.add(density_m2ps3);
     if (i > begin && (sample.flags & flag::kGap))
       disturbance.add_gap(
           unseen_speed_mps(static_cast<double>(sample.utime - record.samples()[i - 1].utime) * kMicrosecond),
@@ -123,12 +142,17 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
     std::vector<Piece> pieces;
     for (std::size_t p = 0; p < record.pieces().size(); ++p) {
       const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : samples.size();
-      pieces.push_back(
-          integrate(record, smoothed.attitude, record.pieces()[p], end, interval_s, sensor.gravity_mps2));
+      pieces.push_back(integrate(record, smoothed, record.pieces()[p], end, interval_s, sensor.gravity_mps2));
     }
     return pieces;
   };
   std::vector<Piece> pieces = pieces_with(kFineInterval_s);
+  for (const Piece& piece : pieces) {
+    const auto changes = find_offset_changes(piece.increments, samples[piece.begin].utime, kFineInterval_s);
+    correct(changes, std::span(smoothed.attitude).subspan(piece.begin, piece.end - piece.begin));
+    smoothed.offset_changes.insert(smoothed.offset_changes.end(), changes.begin(), changes.end());
+  }
+  if (!smoothed.offset_changes.empty()) pieces = pieces_with(kFineInterval_s);
   smoothed.sea = identify(pieces, sensor);
   const double interval_s = smoothed.sea.interval_s;
   if (interval_s != kFineInterval_s) pieces = pieces_with(interval_s);

@@ -4,6 +4,7 @@
 
 #include "estimator/attitude/attitude_smoother.h"
 #include "estimator/heave/disturbance.h"
+#include "estimator/heave/offset_changes.h"
 #include "estimator/heave/sea_model.h"
 #include "estimator/method.h"
 #include "estimator/sample_guard.h"
@@ -27,7 +28,8 @@ class Record {
 
 struct SmoothedRecord {
   std::vector<HeaveSample> heave;        // one a usable sample
-  std::vector<AttitudeSample> attitude;  // beside it
+  std::vector<AttitudeSample> attitude;  // beside it; its acceleration less the changes of the offset
+  std::vector<OffsetChange> offset_changes;
   SeaModel sea;
   Motion motion;
 };

@@ -50,6 +50,18 @@ TEST(Smoothed, HasNoErrorOfItsOwnOnPerfectSamples) {
   EXPECT_LT(rms_over_hm0(out.heaves, record, 3000, out.heaves.size() - 3000), 5e-4);
 }
 
+// Once it was taken for a sea of metres.
+TEST(Smoothed, TakesNoChangeOfItsOffsetForASea) {
+  for (const Limit& limit : {Limit{3, 0.5, 0.003}, {8, 1.5, 0.004}, {12, 1, 0.008}})
+    for (const double change_mps2 : {0.05, -0.2, 1.0}) {
+      SeaRecord record = sea_record({.tp_s = limit.tp_s, .hm0_m = limit.hm0_m, .duration_s = 600}, 1);
+      for (std::size_t i = 25000; i < record.samples.size(); ++i) record.samples[i].f_B.z() -= change_mps2;
+      const Collector out = run_smoothed(record.samples);
+      EXPECT_LT(rms_over_hm0(out.heaves, record, 0, out.heaves.size()), limit.rms)
+          << "Tp " << limit.tp_s << " s, " << change_mps2 << " m/s^2";
+    }
+}
+
 TEST(Smoothed, GivesTheHeaveRate) {
   const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 600}, 4);
   const Collector out = run_smoothed(record.samples);

@@ -1,0 +1,28 @@
+// Sudden changes of the vertical accelerometer's offset within a record: a sensor that was knocked or slipped
+// in its mounting, a supply that dropped. The drift of a SeaModel wanders and cannot follow them; what it
+// does not take would be taken for sea.
+//
+// Over tens of seconds no sea accelerates a body on average. The tapered mean over the minute after an
+// instant less that over the minute before it stands out where the offset changed; when it did is told by the
+// corner in the speed, int a dt, by least squares of two straight lines that meet there.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "estimator/heave/path_integrator.h"
+
+namespace waverig::estimator {
+
+struct OffsetChange {
+  std::int64_t utime = 0;
+  double mps2 = 0;     // by so much the vertical acceleration, up, reads larger from then on
+  double sigma_s = 0;  // standard uncertainty of when
+};
+
+// Of a piece without a gap that begins at first_utime; in order of time. Changes below 2.5 mg are left to the
+// drift, as are those within a minute of its ends.
+std::vector<OffsetChange> find_offset_changes(std::span<const PathIncrement> increments,
+                                              std::int64_t first_utime, double interval_s);
+
+}  // namespace waverig::estimator
