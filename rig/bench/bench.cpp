@@ -59,7 +59,7 @@ BenchResult run_bench(const Sequence& given, const BenchOptions& options) {
   const std::filesystem::path file = store_file(options.out);
   const std::int64_t begin = options.simulate ? options.simulation.start_utime : system_utime();
   RunInfo fresh{given.title, given.procedure, options.version, given.fingerprints, {}, begin, options.simulate, "running", {}};
-  if (!options.resume && !std::filesystem::exists(file)) fresh.sequence = keep_files(given, options.out);
+  if (!options.resume && !Store::begun(file)) fresh.sequence = keep_files(given, options.out);
   Store store = options.resume ? Store::open(file) : Store::create(file, fresh);
   const RunInfo info = store.info();
   if (options.resume) {

@@ -129,22 +129,36 @@ void Store::execute(const char* sql) const {
   if (sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) refuse(database_);
 }
 
+bool Store::begun(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return false;
+  Store store(open_database(file, SQLITE_OPEN_READWRITE));
+  Statement made(store.database_, "SELECT user_version <> 0 OR EXISTS(SELECT * FROM sqlite_master) FROM pragma_user_version");
+  return made.step() && made.integer() != 0;
+}
+
+// Whole under its own name or not at all: what a kill leaves behind has another name, and the next takes its place.
 Store Store::create(const std::filesystem::path& file, const RunInfo& info) {
-  if (std::filesystem::exists(file))
+  if (begun(file))
     throw UserError(fmt::format("{}: a run is there already: expected another directory, or --resume", file.string()));
-  Store store(open_database(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
-  store.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; BEGIN IMMEDIATE;");
-  store.execute(kSchema);
-  store.execute(fmt::format("PRAGMA user_version = {};", kSchemaVersion).c_str());
-  Statement(store.database_, "INSERT INTO run VALUES(?,?,?,?,?,?,?,?,?)")
-      .bind(info.title).bind(info.procedure).bind(info.version).bind(json_of(info.files)).bind(json_of(info.instruments))
-      .bind(info.started_utime).bind(std::int64_t{info.simulated}).bind(info.outcome).bind(info.sequence).step();
-  store.execute("COMMIT;");
-  return store;
+  const std::filesystem::path partial = file.string() + ".partial";
+  for (const char* rest : {".partial", ".partial-journal", ".partial-wal", ".partial-shm", "-journal", "-wal", "-shm"})
+    std::filesystem::remove(file.string() + rest);   // a journal of another file would be played into the new one
+  {
+    Store store(open_database(partial, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
+    store.execute("PRAGMA synchronous = FULL; BEGIN IMMEDIATE;");
+    store.execute(kSchema);
+    store.execute(fmt::format("PRAGMA user_version = {};", kSchemaVersion).c_str());
+    Statement(store.database_, "INSERT INTO run VALUES(?,?,?,?,?,?,?,?,?)")
+        .bind(info.title).bind(info.procedure).bind(info.version).bind(json_of(info.files)).bind(json_of(info.instruments))
+        .bind(info.started_utime).bind(std::int64_t{info.simulated}).bind(info.outcome).bind(info.sequence).step();
+    store.execute("COMMIT; PRAGMA journal_mode = WAL;");
+  }
+  std::filesystem::rename(partial, file);
+  return open(file);
 }
 
 Store Store::open(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) throw UserError(fmt::format("{}: no run is there: expected a bench store", file.string()));
+  if (!begun(file)) throw UserError(fmt::format("{}: no run is there: expected a bench store", file.string()));
   Store store(open_database(file, SQLITE_OPEN_READWRITE));
   Statement version(store.database_, "PRAGMA user_version");
   if (!version.step() || version.integer() != kSchemaVersion)

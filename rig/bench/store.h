@@ -72,6 +72,8 @@ class Store {
   // Throws UserError where the file cannot be made or opened, or is none of ours.
   static Store create(const std::filesystem::path& file, const RunInfo& info);
   static Store open(const std::filesystem::path& file);
+  // False where no run has begun: no file, or an SQLite file of nothing, as a kill could leave it once.
+  static bool begun(const std::filesystem::path& file);
   Store(Store&&) noexcept;
   ~Store();
 

@@ -63,7 +63,7 @@ void keep_scale_factors(const Sequence& sequence, const BenchArguments& argument
   if (arguments.scale_factors.empty()) return;
   const estimator::FrontEndCalibration known = estimator::load_front_end_calibration(arguments.scale_factors);
   for (const UnitDescription::Channel& c : sequence.laboratory.unit.channels) known.channel(c.name);   // refused now, not after a weekend
-  if (!arguments.resume && fs::exists(store_file(arguments.out))) return;                              // run_bench refuses
+  if (!arguments.resume && Store::begun(store_file(arguments.out))) return;                          // run_bench refuses
   fs::create_directories(arguments.out);
   save(known, kept_scale_factors(arguments.out));
 }
