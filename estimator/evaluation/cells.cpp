@@ -157,22 +157,39 @@ std::vector<CellResult> cells_of(std::span<const RunResult> runs) {
   return pooling.finish();
 }
 
-void tell_heave_scatter(std::span<CellResult> cells, std::span<const RunResult> runs) {
+namespace {
+
+// How far the root of the mean square over repeats is left to chance.
+struct Scatter {
+  double n = 0, mean = 0, squares = 0;  // of the mean squares of the runs
+
+  void add(double rms_m) {
+    if (!std::isfinite(rms_m)) return;
+    const double q = rms_m * rms_m, step = q - mean;
+    mean += step / ++n;
+    squares += step * (q - mean);
+  }
+  // A root has half the relative uncertainty.
+  double sigma_m() const {
+    return n > 1 ? std::sqrt(squares / (n - 1) / n) / (2 * std::sqrt(mean)) : estimator::kUnknown;
+  }
+};
+
+}  // namespace
+
+void tell_scatter(std::span<CellResult> cells, std::span<const RunResult> runs) {
   for (CellResult& cell : cells) {
-    double n = 0, sum = 0, squares = 0;  // of the mean squares of the runs
+    Scatter heave, waves;
     for (const RunResult& run : runs) {
-      if (run.period_s != cell.period_s || run.height_m != cell.height_m || run.method != cell.method ||
-          !std::isfinite(run.heave_rmse_m))
+      if (run.period_s != cell.period_s || run.height_m != cell.height_m || run.method != cell.method)
         continue;
-      const double q = run.heave_rmse_m * run.heave_rmse_m, step = q - (n > 0 ? sum / n : 0.0);
-      n += 1;
-      sum += q;
-      squares += step * (q - sum / n);
+      heave.add(run.heave_rmse_m);
+      waves.add(run.statistics.rmse_m);
     }
-    cell.heave_runs = static_cast<int>(n);
-    // The rms is the root of their mean: half its relative uncertainty.
-    cell.heave_rmse_sigma_m =
-        n > 1 ? std::sqrt(squares / (n - 1) / n) / (2 * std::sqrt(sum / n)) : estimator::kUnknown;
+    cell.heave_rmse_sigma_m = heave.sigma_m();
+    cell.heave_runs = static_cast<int>(heave.n);
+    cell.wave_rmse_sigma_m = waves.sigma_m();
+    cell.wave_runs = static_cast<int>(waves.n);
   }
 }
 

@@ -62,7 +62,8 @@ class CellPooling {
 // The same for runs that are all at hand, in any order.
 std::vector<CellResult> cells_of(std::span<const RunResult> runs);
 
-// How far the heave's rms of each cell is left to chance, from its runs.
-void tell_heave_scatter(std::span<CellResult> cells, std::span<const RunResult> runs);
+// How far the rms of each cell, of the heave's error and of the single waves', is left to chance: from its
+// runs.
+void tell_scatter(std::span<CellResult> cells, std::span<const RunResult> runs);
 
 }  // namespace waverig::evaluation

@@ -25,19 +25,25 @@ double scatter_m(const CellResult& cell) {
   return is_sea(cell) ? cell.statistics.rmse_m : cell.statistics.std_m;
 }
 
-double scatter_sigma_m(const CellResult& cell) {
+double std_sigma_m(const CellResult& cell) {
   const std::int64_t waves = cell.statistics.waves;
-  return waves > 1 ? scatter_m(cell) / std::sqrt(2.0 * static_cast<double>(waves - 1)) : estimator::kUnknown;
+  return waves > 1 ? cell.statistics.std_m / std::sqrt(2.0 * static_cast<double>(waves - 1))
+                   : estimator::kUnknown;
 }
 
 double heave_rmse_m(const CellResult& cell) { return is_sea(cell) ? cell.heave_rmse_m : estimator::kUnknown; }
 
+// What a number's repeats tell of its standard uncertainty.
+struct OfRepeats {
+  double sigma_m;
+  int runs;
+};
+
 // What k = 2 is of infinitely many repeats, of few: Abramowitz and Stegun, eq. (26.7.5), at a normal deviate
-// of
-// 2. Degrees of freedom after Welch and Satterthwaite (GUM, eq. G.2b).
-double heave_coverage_factor(const CellResult& a, const CellResult& b) {
-  const double ua = std::pow(a.heave_rmse_sigma_m, 2), ub = std::pow(b.heave_rmse_sigma_m, 2);
-  const double x = (ua * ua / (a.heave_runs - 1) + ub * ub / (b.heave_runs - 1)) / std::pow(ua + ub, 2);
+// of 2. Degrees of freedom after Welch and Satterthwaite (GUM, eq. G.2b).
+double coverage_factor(const OfRepeats& a, const OfRepeats& b) {
+  const double ua = std::pow(a.sigma_m, 2), ub = std::pow(b.sigma_m, 2);
+  const double x = (ua * ua / (a.runs - 1) + ub * ub / (b.runs - 1)) / std::pow(ua + ub, 2);
   return kCoverageFactor + x * (2.5 + x * (3.0625 + x * (2.859 + x * 1.844)));
 }
 
@@ -54,6 +60,24 @@ Difference judged(double baseline, double candidate, double sigma, double covera
   return d;
 }
 
+Difference judged(double baseline, double candidate, const OfRepeats& a, const OfRepeats& b) {
+  return judged(baseline, candidate, std::hypot(a.sigma_m, b.sigma_m), coverage_factor(a, b));
+}
+
+// The errors of neighbouring waves of a sea go together: so many waves say less than as many numbers would,
+// and only the repeats say how much less.
+Difference scatter_judged(const CellResult& a, const CellResult& b) {
+  if (is_sea(a))
+    return judged(scatter_m(a), scatter_m(b), OfRepeats{a.wave_rmse_sigma_m, a.wave_runs},
+                  OfRepeats{b.wave_rmse_sigma_m, b.wave_runs});
+  return judged(scatter_m(a), scatter_m(b), std::hypot(std_sigma_m(a), std_sigma_m(b)));
+}
+
+// Where it takes repeats and there are none, the others decide.
+Verdict where_told(Verdict verdict) {
+  return verdict == Verdict::kUnknown ? Verdict::kNotSignificant : verdict;
+}
+
 CellComparison compared(const CellResult& baseline, const CellResult& candidate) {
   const HeightStatistics &b = baseline.statistics, &c = candidate.statistics;
   CellComparison result{
@@ -61,17 +85,16 @@ CellComparison compared(const CellResult& baseline, const CellResult& candidate)
   result.mean_error_m =
       judged(mean_error_m(baseline), mean_error_m(candidate),
              std::hypot(b.expanded_uncertainty_m, c.expanded_uncertainty_m) / kCoverageFactor);
-  result.std_m = judged(scatter_m(baseline), scatter_m(candidate),
-                        std::hypot(scatter_sigma_m(baseline), scatter_sigma_m(candidate)));
+  result.std_m = scatter_judged(baseline, candidate);
   result.hm0_error_m = judged(hm0_error_m(baseline), hm0_error_m(candidate),
                               std::hypot(baseline.sea.sea.hm0_sigma_m, candidate.sea.sea.hm0_sigma_m));
   result.heave_rmse_m = judged(heave_rmse_m(baseline), heave_rmse_m(candidate),
-                               std::hypot(baseline.heave_rmse_sigma_m, candidate.heave_rmse_sigma_m),
-                               heave_coverage_factor(baseline, candidate));
-  const Verdict of_heave = result.heave_rmse_m.verdict == Verdict::kUnknown ? Verdict::kNotSignificant
-                                                                            : result.heave_rmse_m.verdict;
+                               OfRepeats{baseline.heave_rmse_sigma_m, baseline.heave_runs},
+                               OfRepeats{candidate.heave_rmse_sigma_m, candidate.heave_runs});
+  const Verdict of_heave = where_told(result.heave_rmse_m.verdict),
+                of_scatter = is_sea(baseline) ? where_told(result.std_m.verdict) : result.std_m.verdict;
   for (const Verdict verdict : {Verdict::kWorse, Verdict::kUnknown, Verdict::kBetter})
-    if (result.mean_error_m.verdict == verdict || result.std_m.verdict == verdict ||
+    if (result.mean_error_m.verdict == verdict || of_scatter == verdict ||
         result.hm0_error_m.verdict == verdict || of_heave == verdict) {
       result.verdict = verdict;
       break;

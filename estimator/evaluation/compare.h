@@ -34,7 +34,7 @@ struct CellComparison {
   // / 2.
   Difference mean_error_m{};
   // Standard deviation of single waves; on irregular seas, whose waves differ by nature, the rms of their
-  // errors. Its uncertainty: std / sqrt(2 (n - 1)), of normal scatter.
+  // errors. Its uncertainty: std / sqrt(2 (n - 1)), of normal scatter; on seas as of heave_rmse_m.
   Difference std_m{};
   // |Hm0 - true Hm0| of a sea, where the method tells one of waves enough. Its uncertainty: what the method
   // states.
@@ -46,9 +46,9 @@ struct CellComparison {
       Verdict::kNotSignificant;  // worse if any is, else unknown if any is, else better if any is
 };
 
-// A difference is significant where it exceeds two standard uncertainties (k = 2), of heave, whose repeats
-// are few, as many as leave no more to chance (Student; GUM, table G.2). Cells are matched by period, height
-// and method, in the order of the baseline, then what only the candidate has.
+// A difference is significant where it exceeds two standard uncertainties (k = 2); where repeats tell them,
+// which are few, as many as leave no more to chance (Student; GUM, table G.2). Cells are matched by period,
+// height and method, in the order of the baseline, then what only the candidate has.
 std::vector<CellComparison> compare_cells(std::span<const CellResult> baseline,
                                           std::span<const CellResult> candidate);
 

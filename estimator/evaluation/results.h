@@ -99,6 +99,8 @@ struct CellResult {
   // told anew from the runs where results are read.
   double heave_rmse_sigma_m = estimator::kUnknown;
   int heave_runs = 0;
+  double wave_rmse_sigma_m = estimator::kUnknown;  // likewise, of statistics.rmse_m
+  int wave_runs = 0;
   double heave_bound_m = estimator::kUnknown;  // root of the mean square
   double true_hm0_m = estimator::kUnknown;     // this and the following: means over the repeats
   double heave_gain = estimator::kUnknown;

@@ -184,7 +184,7 @@ CampaignResults read_results(const std::filesystem::path& directory) {
   head_fields(reader, results);
   reader("cells", results.cells);
   reader("runs", results.runs);
-  tell_heave_scatter(results.cells, results.runs);
+  tell_scatter(results.cells, results.runs);
   if (!results.complete)
     throw UserError(fmt::format("{}: key 'complete' is false; expected a finished campaign", path.string()));
   const auto calibration = object.find("calibration");

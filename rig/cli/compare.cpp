@@ -43,7 +43,9 @@ void add_compare(CLI::App& app, Command& chosen) {
       "A cell is better or worse where mean error, standard deviation or, of a sea, the error of Hm0 or the\n"
       "rms of the heave's error differ by more than two standard uncertainties of the difference; a method\n"
       "that states none is not judged by it. That of the heave is told by its repeats, two at least in each\n"
-      "campaign, with Student's factor for few.\n"
+      "campaign, with Student's factor for few, and so is, of a sea, that of single waves (std cm: the rms "
+      "of\n"
+      "their errors there).\n"
       "Exit status 1 where any cell is worse.\n"
       "Example:\n  waverig compare results/before results/after --csv comparison.csv");
   command->callback([arguments, &chosen] { chosen = [arguments] { return compare(*arguments); }; });

@@ -62,6 +62,8 @@ TEST(Compare, JudgesTheErrorOfSingleWavesOnSeas) {
   b.statistics.rmse_m = 0.02;
   EXPECT_EQ(compared(a, b).std_m.verdict, Verdict::kBetter) << "regular waves";
   a.true_hm0_m = b.true_hm0_m = a.height_m;
+  a.wave_rmse_sigma_m = b.wave_rmse_sigma_m = 0.001;
+  a.wave_runs = b.wave_runs = 3;
   const CellComparison c = compared(a, b);
   EXPECT_EQ(c.std_m.verdict, Verdict::kWorse);
   EXPECT_EQ(c.std_m.baseline, 0.01);
@@ -120,7 +122,7 @@ struct Repeats {
       sum += rmse * rmse;
     }
     cell.heave_rmse_m = std::sqrt(sum / static_cast<double>(rmse_m.size()));
-    tell_heave_scatter(std::span(&cell, 1), runs);
+    tell_scatter(std::span(&cell, 1), runs);
   }
 };
 
@@ -145,6 +147,59 @@ TEST(Compare, DoesNotJudgeHeaveOfASingleRun) {
   EXPECT_EQ(c.heave_rmse_m.verdict, Verdict::kUnknown);
   EXPECT_EQ(c.heave_rmse_m.baseline, 0.010);
   EXPECT_EQ(c.verdict, Verdict::kNotSignificant);
+}
+
+// Repeats of one sea, whose single waves are missed by these rms.
+CellResult of_waves(const std::vector<double>& rmse_m) {
+  Repeats sea({0.01});
+  RunResult run = sea.runs.front();
+  sea.runs.clear();
+  double sum = 0;
+  for (const double rmse : rmse_m) {
+    run.statistics.rmse_m = rmse;
+    sea.runs.push_back(run);
+    sum += rmse * rmse;
+  }
+  sea.cell.statistics.rmse_m = std::sqrt(sum / static_cast<double>(rmse_m.size()));
+  tell_scatter(std::span(&sea.cell, 1), sea.runs);
+  return sea.cell;
+}
+
+// The errors of neighbouring waves of a sea go together: a hundred waves are not a hundred numbers.
+TEST(Compare, JudgesSingleWavesOfASeaByItsRepeats) {
+  const CellResult a = of_waves({0.010, 0.011, 0.012}), b = of_waves({0.012, 0.013, 0.014}),
+                   c = of_waves({0.020, 0.021, 0.022});
+  EXPECT_EQ(compared(a, b).verdict, Verdict::kNotSignificant);  // 2.4 standard uncertainties, as above
+  EXPECT_NEAR(compared(a, b).std_m.sigma, std::sqrt(2.0) * 0.001 / std::sqrt(3.0), 1e-5);
+  EXPECT_EQ(compared(a, c).std_m.verdict, Verdict::kWorse);
+  EXPECT_EQ(compared(a, c).verdict, Verdict::kWorse);
+  EXPECT_EQ(compared(c, a).verdict, Verdict::kBetter);
+}
+
+TEST(Compare, DoesNotJudgeSingleWavesOfASingleRunOfASea) {
+  const CellComparison c = compared(of_waves({0.010}), of_waves({0.020, 0.021, 0.022}));
+  EXPECT_EQ(c.std_m.verdict, Verdict::kUnknown);
+  EXPECT_EQ(c.std_m.baseline, 0.010);
+  EXPECT_EQ(c.verdict, Verdict::kNotSignificant);
+  CellResult lost = of_waves({0.010});
+  lost.statistics.rmse_m = estimator::kUnknown;
+  EXPECT_EQ(compared(of_waves({0.010}), lost).verdict, Verdict::kWorse) << "it says nothing any more";
+}
+
+TEST(Compare, SeldomCriesWolfOverSingleWavesOfASea) {
+  RandomStream random(5, "waves");
+  int wolves = 0;
+  const int cells = 10000;
+  for (int i = 0; i < cells; ++i) {
+    const auto drawn = [&] {
+      std::vector<double> rmse_m;
+      for (int k = 0; k < 3; ++k) rmse_m.push_back(0.01 * (1 + random.gaussian(0.2)));
+      return of_waves(rmse_m);
+    };
+    wolves += compared(drawn(), drawn()).verdict != Verdict::kNotSignificant ? 1 : 0;
+  }
+  EXPECT_LT(wolves, 0.055 * cells);
+  EXPECT_GT(wolves, 0.015 * cells);
 }
 
 // Of one quality, by few repeats: no more than one in 22, as k = 2 promises; of two repeats fewer (Welch).
