@@ -1,8 +1,12 @@
 // The comparison of two campaigns as a page.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "estimator/evaluation/compare.h"
 #include "lcmtypes/error.h"
@@ -56,6 +60,53 @@ std::string tally(const std::vector<evaluation::CellComparison>& cells) {
   return out + ".</p>\n";
 }
 
+bool known(const evaluation::Difference& d) {
+  return std::isfinite(d.baseline) || std::isfinite(d.candidate);
+}
+
+// Three columns a quantity; those of seas only where there are any.
+std::string cells_table(const std::vector<evaluation::CellComparison>& cells) {
+  struct Quantity {
+    const char* name;
+    evaluation::Difference evaluation::CellComparison::*of;
+  };
+  std::vector<Quantity> quantities = {{"Error", &evaluation::CellComparison::mean_error_m},
+                                      {"Std", &evaluation::CellComparison::std_m}};
+  bool seas = false;
+  for (const Quantity& q : {Quantity{"Hm0 error", &evaluation::CellComparison::hm0_error_m},
+                            Quantity{"Heave rms", &evaluation::CellComparison::heave_rmse_m}})
+    if (std::any_of(cells.begin(), cells.end(), [&](const auto& cell) { return known(cell.*q.of); })) {
+      quantities.push_back(q);
+      seas = true;
+    }
+  std::vector<std::string> heads = {"Period s", "Height cm", "Method", "Verdict"};
+  for (const Quantity& q : quantities)
+    for (const char* column : {", baseline", ", candidate", ": verdict"})
+      heads.push_back(std::string(q.name) + column);
+  HtmlTable table(
+      std::string("Error: of the mean height against the true mean, cm. Std: "
+                  "of single waves, cm; on irregular seas the rms of their errors. ") +
+          (seas ? "Hm0 error: against the true Hm0, cm. Heave rms: of the heave\u2019s error, cm. " : "") +
+          "A difference counts where it exceeds two standard uncertainties" +
+          (seas ? "; of single waves and heave on a sea these come from the repeats, two at least in each "
+                  "campaign, or they are shown and do not count."
+                : "."),
+      heads);
+  const SettingColumns set(cells);
+  for (const evaluation::CellComparison& cell : cells) {
+    std::vector<HtmlCell> row = {set.period(cell), set.height(cell), text_cell(cell.method),
+                                 verdict_cell(cell.verdict)};
+    for (const Quantity& q : quantities) {
+      const evaluation::Difference& d = cell.*q.of;
+      row.push_back(number_cell(d.baseline / kCentimetre, 2));
+      row.push_back(number_cell(d.candidate / kCentimetre, 2));
+      row.push_back(known(d) ? verdict_cell(d.verdict) : text_cell("\u2013"));
+    }
+    table.add_row(std::move(row));
+  }
+  return table.html();
+}
+
 }  // namespace
 
 std::string comparison_html(const evaluation::CampaignResults& baseline, const fs::path& baseline_directory,
@@ -67,27 +118,14 @@ std::string comparison_html(const evaluation::CampaignResults& baseline, const f
     throw UserError(
         fmt::format("{} and {}: no period, height and method in common; expected two campaigns of one kind",
                     baseline_directory.string(), candidate_directory.string()));
-  HtmlTable table(
-      "Error: of the mean height against the true mean, cm. Std: "
-      "of single waves, cm; on irregular seas the rms of their errors. A difference counts "
-      "where it exceeds two standard uncertainties.",
-      {"Period s", "Height cm", "Method", "Verdict", "Error, baseline", "Error, candidate", "Error: verdict",
-       "Std, baseline", "Std, candidate", "Std: verdict"});
-  const SettingColumns set(cells);
-  for (const evaluation::CellComparison& cell : cells) {
-    const auto cm = [](double m) { return number_cell(m / kCentimetre, 2); };
-    table.add_row({set.period(cell), set.height(cell), text_cell(cell.method), verdict_cell(cell.verdict),
-                   cm(cell.mean_error_m.baseline), cm(cell.mean_error_m.candidate),
-                   verdict_cell(cell.mean_error_m.verdict), cm(cell.std_m.baseline), cm(cell.std_m.candidate),
-                   verdict_cell(cell.std_m.verdict)});
-  }
+  const std::string table = cells_table(cells);
   std::string body =
       "<header>\n<h1>Two campaigns side by side</h1>\n<p "
       "class=\"question\">The question: is the candidate "
       "better, worse, or is the difference not significant?</p>\n<ul>\n" +
       who("Baseline", baseline, baseline_directory) + who("Candidate", candidate, candidate_directory) +
-      "</ul>\n" + tally(cells) + "</header>\n<main>\n<section id=\"cells\"><h2>Cell by cell</h2>\n" +
-      table.html() + "</section>\n";
+      "</ul>\n" + tally(cells) + "</header>\n<main>\n<section id=\"cells\"><h2>Cell by cell</h2>\n" + table +
+      "</section>\n";
   std::string figures;
   for (const FigureInfo& info : kFigureOrder) {
     const std::string file = std::string(info.stem) + ".png";

@@ -240,6 +240,33 @@ TEST(Comparison, CallsBetterWorseAndNotSignificant) {
   EXPECT_EQ(all(html, "(data:image/png;base64,)").size(), 4U);
 }
 
+// What counts in the verdict stands in the table: of a sea its Hm0 and its heave too.
+TEST(Comparison, ShowsHm0AndHeaveOfSeasAlone) {
+  const Example a;
+  const auto page = [&](const evaluation::CampaignResults& candidate) {
+    return comparison_html(a.results, a.folder.path(), candidate, a.folder.path());
+  };
+  EXPECT_EQ(page(a.results).find("Hm0"), std::string::npos);
+  EXPECT_EQ(page(a.results).find("Heave rms"), std::string::npos);
+  evaluation::CampaignResults seas = a.results;
+  evaluation::CellResult& sea = seas.cells[0];
+  sea.motion = evaluation::Motion::kSea;
+  sea.heave_rmse_m = 0.0123;
+  sea.heave_rmse_sigma_m = 0.0001;
+  sea.heave_runs = 3;
+  sea.sea = {.sea = {.hm0_m = 1.0345, .hm0_sigma_m = 0.003}, .true_hm0_m = 1};
+  evaluation::CampaignResults better = seas;
+  better.cells[0].heave_rmse_m = 0.0111;
+  better.cells[0].sea.sea.hm0_m = 1.0567;
+  const std::string html = comparison_html(seas, a.folder.path(), better, a.folder.path());
+  for (const char* text : {">Hm0 error, baseline<", ">Hm0 error, candidate<", ">Hm0 error: verdict<", ">Heave rms, baseline<",
+                           ">Heave rms: verdict<", ">3.45<", ">5.67<", ">1.23<", ">1.11<"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  const std::size_t row = html.find(">3.45<");
+  EXPECT_LT(html.find("\u25BC worse", row), html.find(">1.23<", row)) << "Hm0";
+  EXPECT_LT(html.find("\u25B2 better", row), html.find("</tr>", row)) << "heave";
+}
+
 TEST(Html, Base64OfAPictureIsWhole) {
   const Example example;
   const std::filesystem::path png = example.folder.path() / "figures" / "paper-table-2.png";
