@@ -247,6 +247,7 @@ int estimate(const EstimateArguments& arguments) {
   // What an earlier call left has stood until now. Its summary goes first and the new one comes last: while
   // it is missing the folder is not finished.
   fs::remove(out / "summary.json");
+  if (!arguments.netcdf) fs::remove(out / "record.nc");  // of that earlier call
   collector.close();
   waves_file.commit();
   summary_file.commit();

@@ -468,6 +468,17 @@ TEST(Program, KeepsAnEarlierFilmWhereTheNextIsInterrupted) {
     EXPECT_NE(file.path().extension(), ".partial") << file.path();
 }
 
+TEST(Program, AnEarlierEstimateIsReplacedAsAWhole) {
+  const TemporaryDirectory temporary;
+  std::string csv = "utime,ax,ay,az,gx,gy,gz\n";
+  for (int i = 0; i < 3000; ++i) csv += std::to_string(20000 * i) + ",0,0,-9.80665,0,0,0\n";
+  temporary.write("level.csv", csv);
+  EXPECT_EQ(run(temporary, "estimate level.csv --out out --netcdf").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(temporary / "out/record.nc"));
+  EXPECT_EQ(run(temporary, "estimate level.csv --out out").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(temporary / "out/record.nc")) << "of the earlier call";
+}
+
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
   const TemporaryDirectory temporary;
   temporary.write("wave.csv", wave_record());
