@@ -66,9 +66,10 @@ ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode)
         "--out {}: holds no results that --replace could replace; expected a results directory or a new one",
         directory_.string()));
   if (mode == Mode::kFresh && fs::exists(working_))
-    throw UserError(fmt::format(
-        "--out {}: {} holds an unfinished campaign; expected --resume to go on or --replace to do it anew",
-        directory_.string(), working_.string()));
+    throw UserError(fmt::format("--out {}: {} is unfinished; expected {}--replace to do it anew",
+                                directory_.string(), working_.string(),
+                                // Only what a campaign has claimed can be gone on with.
+                                fs::exists(working_ / kSettingsFile) ? "--resume to go on or " : ""));
   if (mode == Mode::kReplace) fs::remove_all(working_);
   std::error_code error;
   fs::create_directories(runs(), error);

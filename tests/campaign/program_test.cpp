@@ -468,6 +468,20 @@ TEST(Program, KeepsAnEarlierFilmWhereTheNextIsInterrupted) {
     EXPECT_NE(file.path().extension(), ".partial") << file.path();
 }
 
+TEST(Program, AnUnfinishedAnalysisIsNotToldToResume) {
+  const TemporaryDirectory temporary;
+  std::filesystem::create_directories(temporary / "out.partial/runs");
+  const Outcome refused = run(temporary, "analyse compass --runs 2 --out out");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("out.partial is unfinished; expected --replace"), std::string::npos) << refused.err;
+  EXPECT_EQ(run(temporary, "analyse compass --runs 2 --out out --replace").status, 0);
+  temporary.write("c.toml", kTiny);
+  std::filesystem::create_directories(temporary / "swept.partial");
+  temporary.write("swept.partial/campaign.toml", "");
+  const Outcome campaign = run(temporary, "sweep c.toml --out swept");
+  EXPECT_NE(campaign.err.find("expected --resume to go on or --replace"), std::string::npos) << campaign.err;
+}
+
 TEST(Program, AnEarlierEstimateIsReplacedAsAWhole) {
   const TemporaryDirectory temporary;
   std::string csv = "utime,ax,ay,az,gx,gy,gz\n";
