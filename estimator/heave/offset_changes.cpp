@@ -13,10 +13,11 @@ namespace {
 
 constexpr double kWindow_s = 60;
 constexpr double kLeast_mps2 = 2.5e-3 * kStandardGravity;
-constexpr double kOutstanding =
-    6;                    // times the usual: of a body that leans over an offset changes all the time
-constexpr int kMost = 8;  // a sensor that does it more often is not to be mended
-constexpr double kPeriodsInWindow = 4;  // of the sea, at least: what the corner is told by
+// Times the lower quartile, six standard deviations: of a body that leans over an offset changes all the
+// time.
+constexpr double kOutstanding = 19;
+constexpr int kMost = 8;             // a sensor that does it more often is not to be mended
+constexpr double kIndependent = 16;  // speeds in two windows: half waves of a sea as long as 15 s
 
 // Hann's: of a sea nothing is left in a mean so weighted.
 Eigen::VectorXd taper(Eigen::Index n) {
@@ -82,7 +83,7 @@ std::vector<OffsetChange> find_offset_changes(std::span<const PathIncrement> inc
     const double mps2 = best.change / dt,
                  noise_mps = std::sqrt(best.squares / static_cast<double>(speed.size()));
     found.push_back({first_utime + std::llround(static_cast<double>(from + at) * dt / kMicrosecond), mps2,
-                     noise_mps / std::abs(mps2) / kPeriodsInWindow});
+                     noise_mps / std::abs(mps2) / std::sqrt(kIndependent)});
     a.tail(n - from - at).array() -= mps2;
   }
   std::sort(found.begin(), found.end(),

@@ -2,7 +2,7 @@
 // in its mounting, a supply that dropped. The drift of a SeaModel wanders and cannot follow them; what it
 // does not take would be taken for sea.
 //
-// Over tens of seconds no sea accelerates a body on average. The tapered mean over the minute after an
+// Over a minute no sea accelerates a body on average. The tapered mean over the minute after an
 // instant less that over the minute before it stands out where the offset changed; when it did is told by the
 // corner in the speed, int a dt, by least squares of two straight lines that meet there.
 #pragma once
