@@ -4,7 +4,8 @@
 //
 // Over a minute no sea accelerates a body on average. The tapered mean over the minute after an
 // instant less that over the minute before it stands out where the offset changed; when it did is told by the
-// corner in the speed, int a dt, by least squares of two straight lines that meet there.
+// corner in the speed, int a dt, by least squares of two straight lines that meet there. Heave about that
+// time carries flag::kSpike.
 #pragma once
 #include <cstdint>
 #include <span>

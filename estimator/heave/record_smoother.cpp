@@ -28,10 +28,8 @@ struct Piece {
 };
 
 // When an offset changed is not known to the instant.
-double disturbance_m2ps3(const OffsetChange& change, std::int64_t utime) {
-  const bool about =
-      std::abs(static_cast<double>(utime - change.utime)) * kMicrosecond < kAbout * change.sigma_s;
-  return about ? square(change.mps2) * change.sigma_s : 0.0;
+bool about(const OffsetChange& change, std::int64_t utime) {
+  return std::abs(static_cast<double>(utime - change.utime)) * kMicrosecond < kAbout * change.sigma_s;
 }
 
 // Takes them off the vertical acceleration.
@@ -52,7 +50,7 @@ Piece integrate(const Record& record, const SmoothedRecord& smoothed, std::size_
     const double a_up = -attitude.a_N.z();
     double density_m2ps3 = disturbance_m2ps3(attitude, sample.flags, gravity_mps2);
     for (const OffsetChange& change : smoothed.offset_changes)
-      density_m2ps3 += disturbance_m2ps3(change, sample.utime);
+      if (about(change, sample.utime)) density_m2ps3 += square(change.mps2) * change.sigma_s;
     disturbance.add(density_m2ps3);
     if (i > begin && (sample.flags & flag::kGap))
       disturbance.add_gap(
@@ -166,6 +164,8 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
     h.utime = samples[i].utime;
     h.seq = samples[i].seq;
     h.flags = samples[i].flags;
+    for (const OffsetChange& change : smoothed.offset_changes)
+      if (about(change, h.utime)) h.flags |= flag::kSpike;
     h.q_NB = smoothed.attitude[i].q_NB;
     h.heave_sigma_m = std::sqrt(square(h.heave_sigma_m) + systematic);
   }

@@ -59,6 +59,8 @@ TEST(Smoothed, TakesNoChangeOfItsOffsetForASea) {
       const Collector out = run_smoothed(record.samples);
       EXPECT_LT(rms_over_hm0(out.heaves, record, 0, out.heaves.size()), limit.rms)
           << "Tp " << limit.tp_s << " s, " << change_mps2 << " m/s^2";
+      EXPECT_TRUE(out.heaves[25000].flags & flag::kSpike) << change_mps2;
+      EXPECT_FALSE(out.heaves[20000].flags & flag::kSpike) << change_mps2;
     }
 }
 
