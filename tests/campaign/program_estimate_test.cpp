@@ -1,0 +1,171 @@
+// The program's commands about recordings: estimate and calibrate.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+#include <waverig/imu_t.hpp>
+
+#include "estimator/calibration/accelerometer_calibration.h"
+#include "lcmtypes/channels.h"
+#include "lcmtypes/event_log.h"
+#include "tests/campaign/program.h"
+
+namespace waverig {
+namespace {
+
+TEST(Program, EstimatesARecordedRunAsTheSweepDid) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out out").status, 0);
+  const Outcome outcome =
+      run(temporary, "estimate out/runs/T04.00s_H050.0cm_r1.lcm --method harmonic --out again");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::size_t at = outcome.out.find("\"h13_m\":");
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  EXPECT_NEAR(std::stod(outcome.out.substr(at + 8)), 0.5, 0.02)
+      << "of the steady waves: the ramps' are lower";
+}
+
+TEST(Program, SaysWhichSamplesOfALogWereLeftOutAndWhy) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out done").status, 0);
+  const std::string log = "done/runs/T04.00s_H050.0cm_r1.lcm";
+  const Outcome good = run(temporary, "estimate " + log + " --out good");
+  EXPECT_EQ(good.err, "");
+  EXPECT_NE(good.out.find("\"samples_left_out\": 0"), std::string::npos) << good.out;
+  // The same run, the sensor's clock set back by five seconds after the first thousand samples.
+  EventLogReader reader(temporary / log);
+  EventLogWriter writer(temporary / "back.lcm");
+  LogEvent event;
+  for (int samples = 0; reader.next(event);) {
+    if (event.channel != channel::kImu) continue;
+    imu_t m{};
+    ASSERT_TRUE(event.decode(m));
+    if (++samples > 1000) m.utime -= 5'000'000;
+    std::vector<std::uint8_t> data(static_cast<std::size_t>(m.getEncodedSize()));
+    m.encode(data.data(), 0, m.getEncodedSize());
+    writer.write(event.utime, event.channel, data.data(), data.size());
+  }
+  writer.close();
+  const Outcome back = run(temporary, "estimate back.lcm --out back");
+  EXPECT_EQ(back.status, 0) << back.err;
+  EXPECT_TRUE(back.err.starts_with("waverig: back.lcm: 500 of ")) << back.err;
+  EXPECT_NE(back.err.find("(from sample 1001, time "), std::string::npos) << back.err;
+  EXPECT_NE(back.err.find("was the clock set back by 5.0 s?"), std::string::npos) << back.err;
+  EXPECT_EQ(std::count(back.err.begin(), back.err.end(), '\n'), 1) << back.err;
+  EXPECT_NE(back.out.find("\"samples_left_out\": 500"), std::string::npos) << back.out;
+}
+
+std::string six_sides(double bias_mps2) {
+  std::string text = "utime,ax,ay,az,gx,gy,gz\n";
+  for (int row = 0; row < 6 * 600; ++row) {
+    const int pose = row / 600, wiggle = row % 2;
+    double f[3] = {bias_mps2 + 0.001 * wiggle, bias_mps2, bias_mps2};
+    f[pose / 2] += pose % 2 == 0 ? 9.80665 : -9.80665;
+    text += std::to_string(row * 10000) + "," + std::to_string(f[0]) + "," + std::to_string(f[1]) + "," +
+            std::to_string(f[2]) + ",0.01,0.02,0.03\n";
+  }
+  return text;
+}
+
+TEST(Program, CalibratesAUnitLaidOnItsSixSides) {
+  const TemporaryDirectory temporary;
+  temporary.write("sides.csv", six_sides(0.25));
+  const Outcome outcome = run(temporary, "calibrate accelerometer sides.csv --sensor unit7 --out unit7.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("0.250"), std::string::npos) << outcome.out;
+  EXPECT_NE(bytes_of(temporary / "unit7.json").find("unit7"), std::string::npos);
+}
+
+TEST(Program, StatesTheUncertaintyThatTheCalibrationFileLeaves) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  estimator::SensorCalibration calibration;
+  calibration.accelerometer.covariance.diagonal().head<12>().setConstant(1e-7);
+  calibration.gyroscope.offset_sigma_radps.setConstant(1e-4);
+  estimator::store_calibration(calibration, temporary / "good.json");
+  calibration.accelerometer.covariance *= 1e4;
+  estimator::store_calibration(calibration, temporary / "poor.json");
+  for (const std::string method : {"harmonic", "smoothed", "lee2014"}) {
+    const std::string call = "estimate wave.csv --method " + method + " --calibration ";
+    const Outcome good = run(temporary, call + "good.json --out " + method + "_good"),
+                  poor = run(temporary, call + "poor.json --out " + method + "_poor");
+    ASSERT_EQ(good.status, 0) << good.err;
+    ASSERT_EQ(poor.status, 0) << poor.err;
+    EXPECT_GT(number_in(poor.out, "expanded_uncertainty_m"),
+              1.5 * number_in(good.out, "expanded_uncertainty_m"))
+        << method << good.out << poor.out;
+  }
+}
+
+TEST(Program, CalibratesSamplesOfALogOnce) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  temporary.write("raw.toml", std::string(kTiny) + "[calibration]\nenabled = false\n");
+  estimator::store_calibration({}, temporary / "unit.json");
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out done").status, 0);
+  ASSERT_EQ(run(temporary, "sweep raw.toml --out raw").status, 0);
+  const std::string run_log = "/runs/T04.00s_H050.0cm_r1.lcm ";
+  for (const std::string& command : {"estimate done" + run_log + "--calibration unit.json --out x",
+                                     "calibrate accelerometer done" + run_log + "--out x",
+                                     "calibrate compass done" + run_log + "--base unit.json --out x"}) {
+    const Outcome twice = run(temporary, command);
+    EXPECT_EQ(twice.status, 2) << command;
+    EXPECT_NE(twice.err.find("calibrated already"), std::string::npos) << twice.err;
+    EXPECT_EQ(std::count(twice.err.begin(), twice.err.end(), '\n'), 1) << twice.err;
+    EXPECT_FALSE(std::filesystem::exists(temporary / "x/summary.json"));
+  }
+  const Outcome once = run(temporary, "estimate raw" + run_log + "--calibration unit.json --out once");
+  EXPECT_EQ(once.status, 0) << once.err;
+}
+
+TEST(Program, SaysInTheSummaryWhatItWasMadeOf) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  estimator::store_calibration({}, temporary / "unit.json");
+  const Outcome outcome = run(temporary,
+                              "estimate wave.csv --method realtime --calibration unit.json --gravity 9.81 "
+                              "--rest-seconds 0.5 --out out");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string summary = bytes_of(temporary / "out/summary.json");
+  EXPECT_EQ(summary, outcome.out);
+  const std::string version = run(temporary, "--version").out;  // "waverig X\n"
+  const std::string sum = run(temporary, "--version >/dev/null; sha256sum wave.csv").out.substr(0, 64);
+  for (const std::string& expected :
+       {std::string("\"method\": \"realtime\""), std::string("\"sea_state_method\": \"spectral\""),
+        "\"version\": \"" + version.substr(8, version.size() - 9) + "\"",
+        std::string("\"input\": \"wave.csv\""), "\"input_sha256\": \"" + sum + "\"",
+        std::string("\"calibration\": \"unit.json\""), std::string("\"gravity_mps2\": 9.81"),
+        std::string("\"rest_s\": 0.5"), std::string("\"samples\": 12000"), std::string("\"begin_utime\": 0"),
+        std::string("\"end_utime\": 119990000")})
+    EXPECT_NE(summary.find(expected), std::string::npos) << expected << "\n" << summary;
+}
+
+TEST(Program, AnEarlierEstimateIsReplacedAsAWhole) {
+  const TemporaryDirectory temporary;
+  std::string csv = "utime,ax,ay,az,gx,gy,gz\n";
+  for (int i = 0; i < 3000; ++i) csv += std::to_string(20000 * i) + ",0,0,-9.80665,0,0,0\n";
+  temporary.write("level.csv", csv);
+  EXPECT_EQ(run(temporary, "estimate level.csv --out out --netcdf").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(temporary / "out/record.nc"));
+  EXPECT_EQ(run(temporary, "estimate level.csv --out out").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(temporary / "out/record.nc")) << "of the earlier call";
+}
+
+TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  temporary.write("broken.csv", wave_record() + "120000000,0,0,x,0,0,0\n");
+  ASSERT_EQ(run(temporary, "estimate wave.csv --out out").status, 0);
+  const std::string summary = bytes_of(temporary / "out/summary.json"),
+                    heave = bytes_of(temporary / "out/heave.csv");
+  EXPECT_EQ(run(temporary, "estimate broken.csv --out out").status, 2);
+  EXPECT_EQ(bytes_of(temporary / "out/summary.json"), summary);
+  EXPECT_EQ(bytes_of(temporary / "out/heave.csv"), heave);
+}
+
+}  // namespace
+}  // namespace waverig

@@ -1,0 +1,67 @@
+// The program ended in the midst of its work: what it says, and that nothing whole is lost.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <fstream>
+#include <string>
+
+#include "tests/campaign/program.h"
+
+namespace waverig {
+namespace {
+
+TEST(Program, NamesResumeWhereASweepIsInterrupted) {
+  const TemporaryDirectory temporary;
+  temporary.write("long.toml",
+                  "name = \"long\"\n[sweep]\nperiods_s = [4.0]\nheights_cm = [50.0]\nduration_s = 20000.0\n");
+  const Outcome outcome =
+      ended_early(temporary, "sweep long.toml --jobs 2 --out out", "out.partial/calibration.json");
+  EXPECT_EQ(outcome.status, 128 + SIGTERM);
+  EXPECT_EQ(outcome.err,
+            "waverig: interrupted; out.partial keeps the runs that are done, --resume goes on with them\n");
+}
+
+TEST(Program, LeavesNothingHalfWhereAnEstimateIsInterrupted) {
+  const TemporaryDirectory temporary;
+  std::ofstream record(temporary / "long.csv");
+  record << "utime,ax,ay,az,gx,gy,gz\n";
+  for (int row = 0; row < 1000000; ++row) record << row << "0000,0,0,-9.8,0,0,0\n";
+  record.close();
+  const Outcome outcome =
+      ended_early(temporary, "estimate long.csv --method realtime --out out", "out/heave.csv.*");
+  EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
+  EXPECT_TRUE(std::filesystem::is_empty(temporary / "out"));
+}
+
+TEST(Program, KeepsAnEarlierFilmWhereTheNextIsInterrupted) {
+  const TemporaryDirectory temporary;
+  temporary.write(
+      "long.toml",
+      "name = \"long\"\n[sweep]\nperiods_s = [4.0]\nheights_cm = [50.0]\nduration_s = 600.0\nrepeats = 1\n");
+  ASSERT_EQ(run(temporary, "sweep long.toml --out done").status, 0);
+  temporary.write("rig.mp4", "the film before");
+  const Outcome outcome = ended_early(
+      temporary, "film done/runs/T04.00s_H050.0cm_r1.lcm --seconds 600 --out rig.mp4", "rig.mp4.*.partial");
+  EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
+  EXPECT_EQ(bytes_of(temporary / "rig.mp4"), "the film before");
+  for (const auto& file : std::filesystem::directory_iterator(temporary.path()))
+    EXPECT_NE(file.path().extension(), ".partial") << file.path();
+}
+
+TEST(Program, AnUnfinishedAnalysisIsNotToldToResume) {
+  const TemporaryDirectory temporary;
+  std::filesystem::create_directories(temporary / "out.partial/runs");
+  const Outcome refused = run(temporary, "analyse compass --runs 2 --out out");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("out.partial is unfinished; expected --replace"), std::string::npos)
+      << refused.err;
+  EXPECT_EQ(run(temporary, "analyse compass --runs 2 --out out --replace").status, 0);
+  temporary.write("c.toml", kTiny);
+  std::filesystem::create_directories(temporary / "swept.partial");
+  temporary.write("swept.partial/campaign.toml", "");
+  const Outcome campaign = run(temporary, "sweep c.toml --out swept");
+  EXPECT_NE(campaign.err.find("expected --resume to go on or --replace"), std::string::npos) << campaign.err;
+}
+
+}  // namespace
+}  // namespace waverig

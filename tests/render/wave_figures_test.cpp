@@ -1,0 +1,132 @@
+// Figures of single waves and of what each method makes of them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "render/campaign_figures.h"
+#include "render/figure_writer.h"
+#include "render/figures/accuracy.h"
+#include "render/figures/noise.h"
+#include "render/figures/paper.h"
+#include "render/layout.h"
+#include "tests/render/example_campaign.h"
+#include "tests/render/line_of.h"
+
+namespace waverig::render {
+namespace {
+
+// The closed form of figure 6's note: a bias b alone gives waves of b T^2 / pi^2.
+TEST(PaperFigures, NameTheBiasOfAnUncalibratedAccelerometer) {
+  const evaluation::RunRecord run = test::example_run(12, 1.0, 120);
+  PaperTraces traces = recorded_traces(run, "harmonic");
+  constexpr double kBias = 0.2;
+  for (estimator::HeaveSample& sample : traces.heave) {
+    const double t = static_cast<double>(sample.utime - run.start_utime) * 1e-6;
+    sample.heave_m += 0.5 * kBias * t * t;
+  }
+  const std::string subtitle = corrected_trace_figure(run, traces, false).subtitle;
+  EXPECT_NE(subtitle.find("b = 0.200 m/s\u00B2"), std::string::npos) << subtitle;
+  EXPECT_NE(subtitle.find("= 292 cm"), std::string::npos) << subtitle;
+  EXPECT_EQ(corrected_trace_figure(run, traces, true).subtitle.find("b ="), std::string::npos);
+  for (estimator::HeaveSample& sample : traces.heave) {
+    const double t = static_cast<double>(sample.utime - run.start_utime) * 1e-6;
+    sample.heave_m -= kBias * t * t;
+  }
+  const std::string below = corrected_trace_figure(run, traces, false).subtitle;
+  EXPECT_NE(below.find("b = \u22120.200 m/s\u00B2"), std::string::npos) << below;
+}
+
+TEST(PaperFigures, SayWhereTheyDoNotShowTheWholeRecord) {
+  const evaluation::RunRecord whole = test::example_run(2, 1.0, 100), longer = test::example_run(2, 1.0, 200);
+  const auto subtitle_of = [](const evaluation::RunRecord& run) {
+    return corrected_trace_figure(run, recorded_traces(run, "harmonic"), true).subtitle;
+  };
+  EXPECT_EQ(subtitle_of(whole).find("shown"), std::string::npos) << subtitle_of(whole);
+  EXPECT_NE(subtitle_of(longer).find("shown: the first 144 of 228 s"), std::string::npos)
+      << subtitle_of(longer);
+}
+
+TEST(FrequencyResponse, HasNoGainOfATraceThatRanAwayAndNoScatterOfOneRun) {
+  evaluation::CampaignResults results = test::example_campaign();
+  std::erase_if(results.runs, [](const auto& r) { return r.repeat > 0 || r.height_m != 0.6; });
+  for (auto& run : results.runs) {
+    if (run.method != "lee2014" || run.period_s < 12) continue;
+    run.statistics.waves = 0;
+    run.heave_gain = 103;
+  }
+  const Figure figure = frequency_response_figure(results);
+  const Line* line = line_of(figure.panels.at(0), "lee2014");
+  ASSERT_NE(line, nullptr);
+  ASSERT_EQ(line->y.size(), 2U);
+  EXPECT_NEAR(line->y[0], 1, 0.1);
+  EXPECT_TRUE(std::isnan(line->y[1])) << line->y[1];
+  for (const Mark& mark : figure.panels[0].marks) {
+    const auto* bars = std::get_if<ErrorBars>(&mark);
+    if (bars == nullptr) continue;
+    for (const double length : bars->plus) EXPECT_TRUE(std::isnan(length)) << length;
+  }
+}
+
+TEST(FrequencyResponse, SaysWhatIsThere) {
+  evaluation::CampaignResults results = test::example_campaign();
+  const Figure whole = frequency_response_figure(results);
+  EXPECT_NE(whole.subtitle.find("bars: standard deviation between those runs, which differ in height"),
+            std::string::npos);
+  EXPECT_EQ(whole.panels.at(0).x.label, "Wave period");
+  EXPECT_EQ(frequency_response_figure(test::example_sea_campaign()).panels.at(0).x.label, "Set peak period");
+  const auto keep = [&](auto kept) {
+    std::erase_if(results.cells, [&](const auto& c) { return !kept(c); });
+    std::erase_if(results.runs, [&](const auto& r) { return !kept(r); });
+  };
+  keep([](const auto& of) { return of.height_m == 0.6; });
+  const Figure one_height = frequency_response_figure(results);
+  EXPECT_NE(one_height.subtitle.find("bars:"), std::string::npos);
+  EXPECT_EQ(one_height.subtitle.find("height"), std::string::npos) << one_height.subtitle;
+  EXPECT_TRUE(one_height.panels.at(0).x.categories.empty());
+  std::erase_if(results.runs, [](const auto& r) { return r.repeat > 0; });
+  EXPECT_EQ(frequency_response_figure(results).subtitle.find("bars"), std::string::npos) << "none is drawn";
+  keep([](const auto& of) { return of.period_s == 6; });
+  const Figure single = frequency_response_figure(results);
+  EXPECT_EQ(single.panels.at(0).x.categories, (std::vector<std::string>{"6"}))
+      << "no ticks where there is nothing";
+  EXPECT_EQ(line_of(single.panels.at(0), "harmonic")->x, (std::vector<double>{0}));
+}
+
+TEST(SingleWaves, AreCountedByMethodAndNoneIsLowerThanNothing) {
+  evaluation::CampaignResults results = test::example_campaign();
+  EXPECT_TRUE(single_waves_figure(results).subtitle.starts_with("120 waves of each method"));
+  results.runs.front().waves.pop_back();
+  EXPECT_TRUE(single_waves_figure(results).subtitle.starts_with("119 to 120 waves of each method"));
+  evaluation::CampaignResults seas = test::example_sea_campaign();
+  for (auto& run : seas.runs)
+    for (std::size_t i = 0; i < run.waves.size(); ++i)
+      run.waves[i].true_height_m = run.waves[i].wave.height_m = 0.1 + static_cast<double>(i);
+  Figure figure = single_waves_figure(seas);
+  const Line* equal = line_of(figure.panels.at(0), "equal");
+  ASSERT_NE(equal, nullptr);
+  EXPECT_EQ(equal->x.front(), 0);
+  FontBook fonts;
+  prepare_fonts(figure, fonts);
+  fonts.bake();
+  for (const PanelPlan& p : planned(figure, fonts).panels) EXPECT_EQ(p.x.low, 0);
+}
+
+TEST(ErrorMap, OfASingleSettingHasRoomForTheNamesOfItsAxes) {
+  evaluation::CampaignResults results = test::example_campaign();
+  const auto other = [](const auto& of) {
+    return of.period_s != 6 || of.height_m != 0.6 || of.method != "harmonic";
+  };
+  std::erase_if(results.cells, other);
+  std::erase_if(results.runs, other);
+  Canvas canvas;
+  for (const Figure& figure : {error_map_figure(results), std_map_figure(results)}) {
+    const std::string svg = svg_text(figure, canvas.fonts(), {});
+    EXPECT_EQ(svg.find("\u2026"), std::string::npos) << figure.title;
+    EXPECT_NE(svg.find("Set height (cm)"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace waverig::render
