@@ -19,7 +19,8 @@ using estimator::FrontEndReading;
 std::vector<RecordingRow> good_recordings(const Store& store) {
   std::set<std::pair<int, int>> good;
   for (const StepRow& step : store.steps())
-    if (step.outcome == StepOutcome::kDone || step.outcome == StepOutcome::kAccepted) good.emplace(step.index, step.attempt);
+    if (step.outcome == StepOutcome::kDone || step.outcome == StepOutcome::kAccepted)
+      good.emplace(step.index, step.attempt);
   std::vector<RecordingRow> rows = store.recordings();
   std::erase_if(rows, [&](const RecordingRow& r) { return !good.contains({r.index, r.attempt}); });
   return rows;
@@ -60,7 +61,8 @@ struct MeterReadings {
 std::string setting_of(const std::map<std::string, std::string>& tags, const std::string& where) {
   std::string setting;
   for (const char* tag : {"temperature", "channel", "setting"}) {
-    if (!tags.contains(tag)) throw UserError(fmt::format("{}: tags.{} is missing: expected it in the sequence file", where, tag));
+    if (!tags.contains(tag))
+      throw UserError(fmt::format("{}: tags.{} is missing: expected it in the sequence file", where, tag));
     setting += tags.at(tag) + ", ";
   }
   return setting;
@@ -88,7 +90,7 @@ void analyse_scale_factors(const Sequence& sequence, const std::vector<Recording
     std::vector<FrontEndReading> readings;
     double temperature_sum = 0;
   };
-  std::map<std::string, std::map<double, Group>> groups;   // by channel and chamber temperature
+  std::map<std::string, std::map<double, Group>> groups;  // by channel and chamber temperature
   for (const RecordingRow& row : rows) {
     if (row.channels.size() != 1) continue;
     const ChannelCounts& counts = row.channels.front();
@@ -103,7 +105,7 @@ void analyse_scale_factors(const Sequence& sequence, const std::vector<Recording
     reading.duration_s = static_cast<double>(row.ticks) * unit.tick_s;
     if (meter != nullptr) {
       const auto found = meter->find(setting_of(row.tags, fmt::format("recording of step {}", row.index)));
-      if (found != meter->end()) {   // where a level has none, the method refuses it
+      if (found != meter->end()) {  // where a level has none, the method refuses it
         reading.dmm_A = found->second.sum_A / found->second.count;
         reading.dmm_range_A = found->second.range_A;
       }
@@ -122,9 +124,10 @@ void analyse_scale_factors(const Sequence& sequence, const std::vector<Recording
     result.channel = design.name;
     for (const auto& [temperature, group] : found->second) {
       try {
-        result.scale_factors.push_back({group.temperature_sum / static_cast<double>(group.readings.size()),
-                                        meter != nullptr ? estimator::scale_factors_by_dmm(group.readings, knowledge)
-                                                         : estimator::scale_factors_by_calibrator(group.readings, knowledge)});
+        result.scale_factors.push_back(
+            {group.temperature_sum / static_cast<double>(group.readings.size()),
+             meter != nullptr ? estimator::scale_factors_by_dmm(group.readings, knowledge)
+                              : estimator::scale_factors_by_calibrator(group.readings, knowledge)});
       } catch (const UserError& error) {
         throw UserError(fmt::format("{} at {} degC: {}", design.name, temperature, error.what()));
       }
@@ -132,7 +135,8 @@ void analyse_scale_factors(const Sequence& sequence, const std::vector<Recording
     estimator::fit_scale_factor_laws(result.scale_factors, channel);
     analysis.calibration.channels.push_back(std::move(channel));
   }
-  if (analysis.channels.empty()) throw UserError(sequence.file.string() + ": the run has no recording of a single channel");
+  if (analysis.channels.empty())
+    throw UserError(sequence.file.string() + ": the run has no recording of a single channel");
 }
 
 void analyse_bias(const Sequence& sequence, const std::vector<RecordingRow>& rows,
@@ -143,7 +147,8 @@ void analyse_bias(const Sequence& sequence, const std::vector<RecordingRow>& row
   for (const RecordingRow& row : rows) {
     const double nominal_s = static_cast<double>(row.ticks) * unit.tick_s;
     if (row.port == unit.monitor_port)
-      oscillator.push_back({row.temperature, static_cast<double>(row.reference), unit.reference_Hz, nominal_s});
+      oscillator.push_back(
+          {row.temperature, static_cast<double>(row.reference), unit.reference_Hz, nominal_s});
     for (const ChannelCounts& counts : row.channels) {
       const Rates rates = rates_of(row, counts, unit);
       readings[counts.channel].push_back({row.temperature, rates.N_Hz, rates.P_Hz, nominal_s});
@@ -161,7 +166,8 @@ void analyse_bias(const Sequence& sequence, const std::vector<RecordingRow>& row
     channel.bias_budget = result.bias->budget;
     analysis.calibration.channels.push_back(std::move(channel));
   }
-  if (analysis.channels.empty()) throw UserError(sequence.file.string() + ": the run has no recording of channels");
+  if (analysis.channels.empty())
+    throw UserError(sequence.file.string() + ": the run has no recording of channels");
   analysis.oscillator = estimator::fit_oscillator(oscillator);
   analysis.calibration.oscillator = analysis.oscillator.law;
   analysis.calibration.oscillator_budget = analysis.oscillator.budget;
@@ -183,7 +189,8 @@ Analysis analyse(const Sequence& sequence, const Store& store, const estimator::
   calibration.id = fmt::format("{}-{}-{:%Y%m%dT%H%M%S}", sequence.laboratory.unit.serial, sequence.procedure,
                                fmt::gmtime(static_cast<std::time_t>(info.started_utime / 1'000'000)));
   calibration.version = info.version;
-  for (const auto& [name, identity] : info.instruments) calibration.instruments.push_back(name + ": " + identity);
+  for (const auto& [name, identity] : info.instruments)
+    calibration.instruments.push_back(name + ": " + identity);
   for (const auto& [name, print] : info.files) calibration.files.push_back(name + ": " + print);
   const std::vector<RecordingRow> rows = good_recordings(store);
   if (sequence.procedure == "scale_factor") analyse_scale_factors(sequence, rows, nullptr, analysis);

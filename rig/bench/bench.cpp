@@ -22,7 +22,8 @@ class DirectoryLock {
     if (descriptor_ < 0) throw UserError(fmt::format("{}: cannot be written", directory.string()));
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
     ::close(descriptor_);
-    throw UserError(fmt::format("{}: another bench is at work there: expected a directory of its own", directory.string()));
+    throw UserError(fmt::format("{}: another bench is at work there: expected a directory of its own",
+                                directory.string()));
   }
   ~DirectoryLock() { ::close(descriptor_); }
   DirectoryLock(const DirectoryLock&) = delete;
@@ -33,22 +34,28 @@ class DirectoryLock {
 };
 
 std::int64_t system_utime() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 void check_same(const Sequence& sequence, const RunInfo& info, const BenchOptions& options) {
   for (const auto& [name, print] : sequence.fingerprints) {
     const auto found = info.files.find(name);
     if (found == info.files.end() || found->second != print)
-      throw UserError(fmt::format("{}: it has changed since the run in {} began: expected it unchanged, or a new run", name,
-                                  options.out.string()));
+      throw UserError(
+          fmt::format("{}: it has changed since the run in {} began: expected it unchanged, or a new run",
+                      name, options.out.string()));
   }
   if (info.simulated != options.simulate)
-    throw UserError(fmt::format("{}: the run there is {}: expected --resume {} --simulate", options.out.string(),
-                                info.simulated ? "simulated" : "real", info.simulated ? "with" : "without"));
+    throw UserError(fmt::format("{}: the run there is {}: expected --resume {} --simulate",
+                                options.out.string(), info.simulated ? "simulated" : "real",
+                                info.simulated ? "with" : "without"));
   if (sequence.uninterrupted && info.outcome != "running" && !info.outcome.starts_with("done"))
-    throw UserError(fmt::format("{}: the run there ended and was torn down ({}), and its sequence cannot be interrupted: expected a new run",
-                                options.out.string(), info.outcome));
+    throw UserError(
+        fmt::format("{}: the run there ended and was torn down ({}), and its sequence cannot be interrupted: "
+                    "expected a new run",
+                    options.out.string(), info.outcome));
 }
 
 }  // namespace
@@ -58,7 +65,9 @@ BenchResult run_bench(const Sequence& given, const BenchOptions& options) {
   const DirectoryLock lock(options.out);
   const std::filesystem::path file = store_file(options.out);
   const std::int64_t begin = options.simulate ? options.simulation.start_utime : system_utime();
-  RunInfo fresh{given.title, given.procedure, options.version, given.fingerprints, {}, begin, options.simulate, "running", {}};
+  RunInfo fresh{given.title, given.procedure, options.version,  given.fingerprints,
+                {},          begin,           options.simulate, "running",
+                {}};
   if (!options.resume && !Store::begun(file)) fresh.sequence = keep_files(given, options.out);
   Store store = options.resume ? Store::open(file) : Store::create(file, fresh);
   const RunInfo info = store.info();
@@ -73,7 +82,8 @@ BenchResult run_bench(const Sequence& given, const BenchOptions& options) {
   std::unique_ptr<SimulatedLaboratory> laboratory;
   if (options.simulate) {
     time = std::make_unique<VirtualTime>(std::max(state.utime, info.started_utime));
-    laboratory = std::make_unique<SimulatedLaboratory>(options.simulation, given.laboratory, time.get(), info.started_utime, state.world);
+    laboratory = std::make_unique<SimulatedLaboratory>(options.simulation, given.laboratory, time.get(),
+                                                       info.started_utime, state.world);
     sequence.laboratory = laboratory->addressed();
   }
   Reactor reactor(time.get(), options.stop);

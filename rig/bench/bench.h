@@ -1,4 +1,5 @@
-// The bench as a whole: a sequence, carried out against a simulated or a real laboratory, analysed and reported.
+// The bench as a whole: a sequence, carried out against a simulated or a real laboratory, analysed and
+// reported.
 #pragma once
 #include <atomic>
 #include <filesystem>
@@ -13,7 +14,7 @@
 namespace waverig::rig::bench {
 
 struct BenchOptions {
-  std::filesystem::path out;                        // the run's directory
+  std::filesystem::path out;  // the run's directory
   bool simulate = false;
   SimulationSettings simulation;
   bool resume = false;
@@ -26,12 +27,12 @@ struct BenchOptions {
 };
 
 struct BenchResult {
-  std::string outcome;                              // as Runner::run
-  bool complete = false;                            // every step was carried out
+  std::string outcome;    // as Runner::run
+  bool complete = false;  // every step was carried out
 };
 
-// Carries the sequence out into options.out (bench.sqlite). Throws UserError where it cannot begin or go on: another
-// run is there, the files have changed since, a broken ramp, another bench at work in the directory.
+// Carries the sequence out into options.out (bench.sqlite). Throws UserError where it cannot begin or go on:
+// another run is there, the files have changed since, a broken ramp, another bench at work in the directory.
 BenchResult run_bench(const Sequence& sequence, const BenchOptions& options);
 
 }  // namespace waverig::rig::bench

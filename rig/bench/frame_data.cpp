@@ -10,7 +10,7 @@
 namespace waverig::rig::bench {
 namespace {
 
-constexpr std::size_t kHead = 8;   // columns, rows
+constexpr std::size_t kHead = 8;  // columns, rows
 constexpr std::uint32_t kColumnsMax = 1000, kRowsMax = 100'000'000;
 
 }  // namespace
@@ -22,14 +22,17 @@ std::vector<std::uint8_t> pack_columns(const std::vector<std::vector<std::int32_
   planes.reserve(columns.size() * rows * 4);
   for (const auto& column : columns)
     for (int byte = 0; byte < 4; ++byte)
-      for (const std::int32_t value : column) planes.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(value) >> (8 * byte)));
+      for (const std::int32_t value : column)
+        planes.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(value) >> (8 * byte)));
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
       libdeflate_alloc_compressor(1), libdeflate_free_compressor);
   std::vector<std::uint8_t> bytes(kHead + libdeflate_zlib_compress_bound(compressor.get(), planes.size()));
-  const auto columns32 = static_cast<std::uint32_t>(columns.size()), rows32 = static_cast<std::uint32_t>(rows);
+  const auto columns32 = static_cast<std::uint32_t>(columns.size()),
+             rows32 = static_cast<std::uint32_t>(rows);
   std::memcpy(bytes.data(), &columns32, 4);
   std::memcpy(bytes.data() + 4, &rows32, 4);
-  bytes.resize(kHead + libdeflate_zlib_compress(compressor.get(), planes.data(), planes.size(), bytes.data() + kHead, bytes.size() - kHead));
+  bytes.resize(kHead + libdeflate_zlib_compress(compressor.get(), planes.data(), planes.size(),
+                                                bytes.data() + kHead, bytes.size() - kHead));
   return bytes;
 }
 
@@ -44,8 +47,10 @@ std::vector<std::vector<std::int32_t>> unpack_columns(const std::vector<std::uin
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
       libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
   std::size_t size = 0;
-  if (!sane || libdeflate_zlib_decompress(decompressor.get(), bytes.data() + kHead, bytes.size() - kHead, planes.data(),
-                                          planes.size(), &size) != LIBDEFLATE_SUCCESS || size != planes.size())
+  if (!sane ||
+      libdeflate_zlib_decompress(decompressor.get(), bytes.data() + kHead, bytes.size() - kHead,
+                                 planes.data(), planes.size(), &size) != LIBDEFLATE_SUCCESS ||
+      size != planes.size())
     throw UserError("bench store: the kept frames of a recording are broken");
   std::vector<std::vector<std::int32_t>> result(columns, std::vector<std::int32_t>(rows));
   for (std::size_t c = 0; c < columns; ++c)

@@ -9,13 +9,20 @@ enum class FaultKind { kTimeout, kDisconnected, kRefused, kErrorQueue, kUnexpect
 
 inline const char* name_of(FaultKind kind) {
   switch (kind) {
-    case FaultKind::kTimeout: return "no answer in time";
-    case FaultKind::kDisconnected: return "connection lost";
-    case FaultKind::kRefused: return "cannot be reached";
-    case FaultKind::kErrorQueue: return "error reported";
-    case FaultKind::kUnexpected: return "unexpected answer";
-    case FaultKind::kOutOfRange: return "out of range";
-    case FaultKind::kData: return "data lost";
+    case FaultKind::kTimeout:
+      return "no answer in time";
+    case FaultKind::kDisconnected:
+      return "connection lost";
+    case FaultKind::kRefused:
+      return "cannot be reached";
+    case FaultKind::kErrorQueue:
+      return "error reported";
+    case FaultKind::kUnexpected:
+      return "unexpected answer";
+    case FaultKind::kOutOfRange:
+      return "out of range";
+    case FaultKind::kData:
+      return "data lost";
   }
   return "fault";
 }

@@ -1,4 +1,5 @@
-// Instruments: the bench's hands: opens sessions by address, sets and reads with checks, makes everything safe.
+// Instruments: the bench's hands: opens sessions by address, sets and reads with checks, makes everything
+// safe.
 #pragma once
 #include <map>
 #include <memory>
@@ -15,7 +16,8 @@ class Instruments {
  public:
   Instruments(const Laboratory& laboratory, Reactor& reactor);
 
-  // Opens the ports and asks every instrument who it is. Throws InstrumentError where one is missing or another one.
+  // Opens the ports and asks every instrument who it is. Throws InstrumentError where one is missing or
+  // another one.
   std::map<std::string, std::string> identify();
   // Tells, asks for errors, reads back. Throws InstrumentError.
   void set(const Instrument& instrument, const Setting& setting, const std::string& command_value);

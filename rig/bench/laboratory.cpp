@@ -22,11 +22,15 @@ const Item* find_named(const std::vector<Item>& items, std::string_view name) {
 
 template <class Item>
 void refuse_twice(const std::vector<Item>& items, TomlTable& table) {
-  if (find_named(items, items.back().name) != &items.back()) table.refuse("name", "a name that no other one has");
+  if (find_named(items, items.back().name) != &items.back())
+    table.refuse("name", "a name that no other one has");
 }
 
-double quantity(TomlTable& table, std::string_view key, const std::string& base, std::optional<std::string> fallback = {}) {
-  return parse_quantity(table.text(key, std::move(fallback)), base, table.place_of(key) + ": " + table.name_of(key)).si;
+double quantity(TomlTable& table, std::string_view key, const std::string& base,
+                std::optional<std::string> fallback = {}) {
+  return parse_quantity(table.text(key, std::move(fallback)), base,
+                        table.place_of(key) + ": " + table.name_of(key))
+      .si;
 }
 
 Unit unit_of(TomlTable& table) {
@@ -66,10 +70,12 @@ void check_address(const Laboratory& laboratory, const std::string& text, TomlTa
                    const std::vector<std::string>& schemes) {
   const Address address = parse_address(text, table.place_of("address") + ": " + table.name_of("address"));
   if (std::ranges::find(schemes, address.scheme) == schemes.end())
-    table.refuse("address", fmt::format("an address that begins with one of {}", fmt::join(schemes, "://, ") ) + "://");
+    table.refuse("address",
+                 fmt::format("an address that begins with one of {}", fmt::join(schemes, "://, ")) + "://");
   if (address.scheme == "tcp" && address.port == 0) table.refuse("address", "tcp://HOST:PORT");
   if (address.scheme == "gpib") {
-    if (find_named(laboratory.gateways, address.host) == nullptr) table.refuse("address", "gpib://GATEWAY/0…30 with a known gateway");
+    if (find_named(laboratory.gateways, address.host) == nullptr)
+      table.refuse("address", "gpib://GATEWAY/0…30 with a known gateway");
     int number = -1;
     std::from_chars(address.path.data(), address.path.data() + address.path.size(), number);
     if (number < 0 || number > 30) table.refuse("address", "a GPIB address from 0 to 30");
@@ -84,14 +90,16 @@ UnitDescription read_unit(TomlTable& table, const Laboratory& laboratory) {
   unit.serial = table.text("serial", {});
   unit.counts_port = table.text("counts_port", {});
   unit.monitor_port = table.text("monitor_port", {});
-  for (const auto& [key, port_name] : {std::pair{"counts_port", unit.counts_port}, {"monitor_port", unit.monitor_port}})
+  for (const auto& [key, port_name] :
+       {std::pair{"counts_port", unit.counts_port}, {"monitor_port", unit.monitor_port}})
     if (laboratory.port(port_name) == nullptr) table.refuse(key, "the name of a port of this file");
   unit.tick_s = quantity(table, "tick", "s");
   unit.clock_Hz = quantity(table, "clock", "Hz");
   unit.reference_Hz = quantity(table, "reference", "Hz");
   const FrameLayout& counts = laboratory.port(unit.counts_port)->layout;
   for (const char* field : {"ticks", "clock", "temperature"}) counts.index_of(field);
-  for (const char* field : {"ticks", "reference", "temperature"}) laboratory.port(unit.monitor_port)->layout.index_of(field);
+  for (const char* field : {"ticks", "reference", "temperature"})
+    laboratory.port(unit.monitor_port)->layout.index_of(field);
   for (TomlTable& group : table.tables("channels")) {
     UnitDescription::Channel channel;
     channel.K_N0_C = quantity(group, "K_N0", "C");
@@ -112,19 +120,25 @@ UnitDescription read_unit(TomlTable& table, const Laboratory& laboratory) {
 
 }  // namespace
 
-const Setting* Instrument::setting(std::string_view setting_name) const { return find_named(settings, setting_name); }
-const Reading* Instrument::reading(std::string_view reading_name) const { return find_named(readings, reading_name); }
+const Setting* Instrument::setting(std::string_view setting_name) const {
+  return find_named(settings, setting_name);
+}
+const Reading* Instrument::reading(std::string_view reading_name) const {
+  return find_named(readings, reading_name);
+}
 const UnitDescription::Channel* UnitDescription::channel(std::string_view channel_name) const {
   return find_named(channels, channel_name);
 }
-const Instrument* Laboratory::instrument(std::string_view name) const { return find_named(instruments, name); }
+const Instrument* Laboratory::instrument(std::string_view name) const {
+  return find_named(instruments, name);
+}
 const Port* Laboratory::port(std::string_view name) const { return find_named(ports, name); }
 
 std::string fingerprint(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   if (!in || !(text << in.rdbuf())) throw UserError(file.string() + ": cannot be read");
-  std::uint64_t hash = 0xcbf29ce484222325ULL;   // FNV-1a: to notice a change, not to resist a forger
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a: to notice a change, not to resist a forger
   for (const char c : text.str()) hash = (hash ^ static_cast<std::uint8_t>(c)) * 0x100000001b3ULL;
   return fmt::format("{:016x}", hash);
 }
@@ -139,7 +153,8 @@ Address parse_address(const std::string& text, const std::string& where) {
   if (const std::size_t mark = rest.find('?'); mark != std::string::npos) {
     std::istringstream options(rest.substr(mark + 1));
     for (std::string option; std::getline(options, option, '&');)
-      a.options[option.substr(0, option.find('='))] = option.find('=') == std::string::npos ? "" : option.substr(option.find('=') + 1);
+      a.options[option.substr(0, option.find('='))] =
+          option.find('=') == std::string::npos ? "" : option.substr(option.find('=') + 1);
     rest.resize(mark);
   }
   const std::size_t slash = rest.find('/');

@@ -18,9 +18,10 @@ class Planner {
  public:
   Planner(const Document& document, Sequence& sequence) : document_(document), sequence_(sequence) {}
 
-  void unfold(const std::vector<RawStep>& steps, Section section, const Variables& variables, const std::string& path,
-              int depth = 0) {
-    if (depth > kDepthMax) throw UserError(steps.front().place + ": blocks within blocks: expected fewer than 20 levels");
+  void unfold(const std::vector<RawStep>& steps, Section section, const Variables& variables,
+              const std::string& path, int depth = 0) {
+    if (depth > kDepthMax)
+      throw UserError(steps.front().place + ": blocks within blocks: expected fewer than 20 levels");
     for (const RawStep& step : steps) {
       if (step.has("for"))
         loop(step, section, variables, path, depth);
@@ -35,7 +36,8 @@ class Planner {
     throw UserError(fmt::format("{}: {} = \"{}\": expected {}", step.place, key, value, expected));
   }
 
-  static std::string fill(const RawStep& step, const std::string& key, const std::string& text, const Variables& variables) {
+  static std::string fill(const RawStep& step, const std::string& key, const std::string& text,
+                          const Variables& variables) {
     std::string result;
     for (std::size_t at = 0; at < text.size();) {
       if (text[at] != '{') {
@@ -48,7 +50,9 @@ class Planner {
       if (found == variables.end()) {
         std::vector<std::string> known;
         for (const auto& [variable, value] : variables) known.push_back("{" + variable + "}");
-        refuse(step, key, text, known.empty() ? "no variable outside a loop" : fmt::format("one of {}", fmt::join(known, ", ")));
+        refuse(
+            step, key, text,
+            known.empty() ? "no variable outside a loop" : fmt::format("one of {}", fmt::join(known, ", ")));
       }
       result += found->second;
       at = end + 1;
@@ -66,12 +70,13 @@ class Planner {
     return fill(step, key, found->second, variables);
   }
 
-  static double quantity(const RawStep& step, const std::string& key, const std::string& base, const Variables& variables,
-                         std::optional<std::string> fallback = {}) {
+  static double quantity(const RawStep& step, const std::string& key, const std::string& base,
+                         const Variables& variables, std::optional<std::string> fallback = {}) {
     return parse_quantity(text(step, key, variables, std::move(fallback)), base, step.place + ": " + key).si;
   }
 
-  void loop(const RawStep& step, Section section, const Variables& variables, const std::string& path, int depth) {
+  void loop(const RawStep& step, Section section, const Variables& variables, const std::string& path,
+            int depth) {
     const std::string variable = step.texts.at("for"), block = text(step, "do", variables);
     const auto steps = document_.blocks.find(block);
     if (steps == document_.blocks.end()) refuse(step, "do", block, "the name of a block of this file");
@@ -89,12 +94,15 @@ class Planner {
     for (const ListItem& item : items) {
       Variables inner = variables;
       inner[variable] = item.name;
-      for (const auto& [field, value] : item.fields) inner[variable + "." + field] = fill(step, field, value, variables);
-      unfold(steps->second, section, inner, path + (path.empty() ? "" : "/") + variable + "=" + item.name, depth + 1);
+      for (const auto& [field, value] : item.fields)
+        inner[variable + "." + field] = fill(step, field, value, variables);
+      unfold(steps->second, section, inner, path + (path.empty() ? "" : "/") + variable + "=" + item.name,
+             depth + 1);
     }
   }
 
-  const Instrument& instrument_of(const RawStep& step, const std::string& key, const std::string& target, PlannedStep& planned) {
+  const Instrument& instrument_of(const RawStep& step, const std::string& key, const std::string& target,
+                                  PlannedStep& planned) {
     const std::size_t dot = target.find('.');
     planned.instrument = target.substr(0, dot);
     planned.name = dot == std::string::npos ? "" : target.substr(dot + 1);
@@ -110,7 +118,8 @@ class Planner {
   void plan_set(const RawStep& step, const Variables& variables, PlannedStep& planned) {
     const std::string target = text(step, "set", variables);
     const Setting* setting = instrument_of(step, "set", target, planned).setting(planned.name);
-    if (setting == nullptr) refuse(step, "set", target, "a setting of that instrument in the laboratory file");
+    if (setting == nullptr)
+      refuse(step, "set", target, "a setting of that instrument in the laboratory file");
     planned.value = text(step, "value", variables);
     if (setting->text) {
       planned.command_value = planned.value;
@@ -118,11 +127,13 @@ class Planner {
       const auto choice = setting->choices.find(planned.value);
       std::vector<std::string> words;
       for (const auto& [word, command] : setting->choices) words.push_back(word);
-      if (choice == setting->choices.end()) refuse(step, "value", planned.value, fmt::format("one of {}", fmt::join(words, ", ")));
+      if (choice == setting->choices.end())
+        refuse(step, "value", planned.value, fmt::format("one of {}", fmt::join(words, ", ")));
       planned.command_value = choice->second;
     } else {
       planned.value_si = parse_quantity(planned.value, setting->unit.base, step.place + ": value").si;
-      if (planned.value_si < setting->low_si * (1 - 1e-12) - 1e-15 || planned.value_si > setting->high_si * (1 + 1e-12))
+      if (planned.value_si < setting->low_si * (1 - 1e-12) - 1e-15 ||
+          planned.value_si > setting->high_si * (1 + 1e-12))
         refuse(step, "value", planned.value,
                fmt::format("{} from {} to {}", target, show_quantity(setting->low_si, setting->unit.base),
                            show_quantity(setting->high_si, setting->unit.base)));
@@ -130,7 +141,8 @@ class Planner {
     }
   }
 
-  const Reading& reading_of(const RawStep& step, const std::string& key, const Variables& variables, PlannedStep& planned) {
+  const Reading& reading_of(const RawStep& step, const std::string& key, const Variables& variables,
+                            PlannedStep& planned) {
     const std::string target = text(step, key, variables);
     const Reading* reading = instrument_of(step, key, target, planned).reading(planned.name);
     if (reading == nullptr) refuse(step, key, target, "a reading of that instrument in the laboratory file");
@@ -146,7 +158,8 @@ class Planner {
     planned.timeout_s = quantity(step, "timeout", "s", variables);
     planned.expected_s = quantity(step, "expect", "s", variables);
     if (planned.poll_s <= 0 || planned.timeout_s < planned.expected_s)
-      refuse(step, "timeout", text(step, "timeout", variables), "at least what is expected, and poll above 0 s");
+      refuse(step, "timeout", text(step, "timeout", variables),
+             "at least what is expected, and poll above 0 s");
   }
 
   void plan_record(const RawStep& step, const Variables& variables, PlannedStep& planned) {
@@ -173,22 +186,30 @@ class Planner {
     planned.keep = step.keep;
   }
 
-  void plan_limits(const RawStep& step, const Variables& variables, const std::string& reading_base, PlannedStep& planned) {
-    static const std::map<std::string, std::string> kRecorded = {
-        {"lost", "1"}, {"temperature", "degC"}, {"temperature_span", "degC"}, {"current", "A"}, {"noise", "A"}};
+  void plan_limits(const RawStep& step, const Variables& variables, const std::string& reading_base,
+                   PlannedStep& planned) {
+    static const std::map<std::string, std::string> kRecorded = {{"lost", "1"},
+                                                                 {"temperature", "degC"},
+                                                                 {"temperature_span", "degC"},
+                                                                 {"current", "A"},
+                                                                 {"noise", "A"}};
     for (const auto& fields : step.limits) {
       Limit limit{"value", reading_base, -HUGE_VAL, HUGE_VAL};
       for (const auto& [key, value] : fields)
-        if (key != "of" && key != "low" && key != "high") refuse(step, "limits." + key, value, "of, low or high");
+        if (key != "of" && key != "low" && key != "high")
+          refuse(step, "limits." + key, value, "of, low or high");
       if (planned.verb == Verb::kRecord) {
         limit.of = fields.contains("of") ? fields.at("of") : "";
         const auto base = kRecorded.find(limit.of);
-        if (base == kRecorded.end()) refuse(step, "limits.of", limit.of, "lost, temperature, temperature_span, current or noise");
+        if (base == kRecorded.end())
+          refuse(step, "limits.of", limit.of, "lost, temperature, temperature_span, current or noise");
         limit.base = base->second;
       }
       const auto bound = [&](const char* key, double& target) {
         if (fields.contains(key))
-          target = parse_quantity(fill(step, key, fields.at(key), variables), limit.base, step.place + ": limits." + key).si;
+          target = parse_quantity(fill(step, key, fields.at(key), variables), limit.base,
+                                  step.place + ": limits." + key)
+                       .si;
       };
       bound("low", limit.low_si);
       bound("high", limit.high_si);
@@ -210,7 +231,8 @@ class Planner {
     for (const char* verb : {"set", "read", "wait", "until", "record", "prompt"})
       if (step.has(verb)) verbs.emplace_back(verb);
     if (verbs.size() != 1)
-      throw UserError(step.place + ": expected one of set, read, wait, until, record, prompt, for in each step");
+      throw UserError(step.place +
+                      ": expected one of set, read, wait, until, record, prompt, for in each step");
     std::string base = "1";
     if (verbs[0] == "set") {
       planned.verb = Verb::kSet;
@@ -222,7 +244,8 @@ class Planner {
     } else if (verbs[0] == "wait") {
       planned.verb = Verb::kWait;
       planned.duration_s = planned.expected_s = quantity(step, "wait", "s", variables);
-      if (planned.duration_s < 0) refuse(step, "wait", text(step, "wait", variables), "a time that is not negative");
+      if (planned.duration_s < 0)
+        refuse(step, "wait", text(step, "wait", variables), "a time that is not negative");
     } else if (verbs[0] == "until") {
       planned.verb = Verb::kUntil;
       plan_until(step, variables, planned);
@@ -238,7 +261,8 @@ class Planner {
         refuse(step, "unattended", planned.unattended, "continue or abort");
     }
     plan_limits(step, variables, base, planned);
-    if (sequence_.plan.size() >= kStepsMax) throw UserError(step.place + ": the plan has more than a million steps");
+    if (sequence_.plan.size() >= kStepsMax)
+      throw UserError(step.place + ": the plan has more than a million steps");
     sequence_.plan.push_back(std::move(planned));
   }
 
@@ -248,7 +272,8 @@ class Planner {
 
 }  // namespace
 
-void unfold(const Document& document, const std::vector<RawStep>& steps, Section section, Sequence& sequence) {
+void unfold(const Document& document, const std::vector<RawStep>& steps, Section section,
+            Sequence& sequence) {
   Planner(document, sequence).unfold(steps, section, {}, "");
 }
 

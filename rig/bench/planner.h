@@ -7,8 +7,8 @@
 
 namespace waverig::rig::bench {
 
-// Unfolds loops and appends to sequence.plan, each step checked against sequence.laboratory. Throws UserError naming
-// file, line, key, value and what was expected.
+// Unfolds loops and appends to sequence.plan, each step checked against sequence.laboratory. Throws UserError
+// naming file, line, key, value and what was expected.
 void unfold(const Document& document, const std::vector<RawStep>& steps, Section section, Sequence& sequence);
 
 }  // namespace waverig::rig::bench

@@ -20,7 +20,9 @@ int baud_of(const Port& port) {
   return baud == address.options.end() ? 921600 : std::atoi(baud->second.c_str());
 }
 
-std::string path_of(const Port& port) { return fmt::format("/{}", parse_address(port.address, port.name).path); }
+std::string path_of(const Port& port) {
+  return fmt::format("/{}", parse_address(port.address, port.name).path);
+}
 
 std::optional<std::size_t> optional_field(const FrameLayout& layout, const std::string& name) {
   for (std::size_t i = 0; i < layout.fields.size(); ++i)
@@ -30,11 +32,12 @@ std::optional<std::size_t> optional_field(const FrameLayout& layout, const std::
 
 }  // namespace
 
-std::int64_t total_step(const FrameLayout& layout, const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to,
-                        std::size_t field) {
+std::int64_t total_step(const FrameLayout& layout, const std::vector<std::int64_t>& from,
+                        const std::vector<std::int64_t>& to, std::size_t field) {
   const int bits = layout.fields[field].bits;
   const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-  return static_cast<std::int64_t>((static_cast<std::uint64_t>(to[field]) - static_cast<std::uint64_t>(from[field])) & mask);
+  return static_cast<std::int64_t>(
+      (static_cast<std::uint64_t>(to[field]) - static_cast<std::uint64_t>(from[field])) & mask);
 }
 
 PortReader::PortReader(Reactor& reactor, const Port& port, const UnitDescription& unit)
@@ -60,7 +63,8 @@ PortReader::~PortReader() {
 
 void PortReader::write(const std::string& line) {
   const std::string text = line + "\n";
-  if (reactor_.virtual_time() != nullptr) reactor_.virtual_time()->sent(cable_, static_cast<std::int64_t>(text.size()));
+  if (reactor_.virtual_time() != nullptr)
+    reactor_.virtual_time()->sent(cable_, static_cast<std::int64_t>(text.size()));
   try {
     serial_.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, 1000);
   } catch (const std::runtime_error& error) {
@@ -70,7 +74,8 @@ void PortReader::write(const std::string& line) {
 
 void PortReader::read() {
   const std::span<const std::uint8_t> got = serial_.read(buffer_, 0);
-  if (reactor_.virtual_time() != nullptr) reactor_.virtual_time()->received(cable_, static_cast<std::int64_t>(got.size()));
+  if (reactor_.virtual_time() != nullptr)
+    reactor_.virtual_time()->received(cable_, static_cast<std::int64_t>(got.size()));
   decoder_.add(got);
   while (const Frame* frame = decoder_.next()) {
     if (recording_ && !recording_->complete) add(frame->raw);
@@ -86,8 +91,9 @@ double PortReader::temperature(const std::vector<std::int64_t>& raw) const {
 void PortReader::begin(const std::vector<std::string>& channels, double duration_s, bool join, bool keep) {
   Recording& r = recording_.emplace();
   for (const std::string& channel : channels) {
-    const auto N = optional_field(port_.layout, channel + "_N"), P = optional_field(port_.layout, channel + "_P");
-    if (!N || !P) continue;   // not a channel of this port
+    const auto N = optional_field(port_.layout, channel + "_N"),
+               P = optional_field(port_.layout, channel + "_P");
+    if (!N || !P) continue;  // not a channel of this port
     r.channels.push_back(channel);
     r.fields.push_back(*N);
     r.fields.push_back(*P);
@@ -136,7 +142,8 @@ void PortReader::end_second(const std::vector<std::int64_t>& raw) {
   for (std::size_t i = 0; i < r.channels.size(); ++i) {
     const UnitDescription::Channel& c = *unit_.channel(r.channels[i]);
     r.second_A[i].push_back((c.K_N0_C * static_cast<double>(step(r.second, raw, r.fields[2 * i])) -
-                             c.K_P0_C * static_cast<double>(step(r.second, raw, r.fields[2 * i + 1]))) / seconds);
+                             c.K_P0_C * static_cast<double>(step(r.second, raw, r.fields[2 * i + 1]))) /
+                            seconds);
   }
   r.second = raw;
 }
@@ -156,11 +163,13 @@ RecordingRow PortReader::finish() {
     row.temperature = r.temperature_sum / static_cast<double>(r.frames);
     row.temperature_span = r.temperature_high - r.temperature_low;
     for (std::size_t i = 0; i < r.channels.size(); ++i) {
-      ChannelCounts c{r.channels[i], step(r.first, r.last, r.fields[2 * i]), step(r.first, r.last, r.fields[2 * i + 1]), 0};
+      ChannelCounts c{r.channels[i], step(r.first, r.last, r.fields[2 * i]),
+                      step(r.first, r.last, r.fields[2 * i + 1]), 0};
       const std::vector<double>& seconds = r.second_A[i];
-      if (seconds.size() >= 10) {   // from differences of neighbours, so that drift does not count
+      if (seconds.size() >= 10) {  // from differences of neighbours, so that drift does not count
         double sum = 0;
-        for (std::size_t k = 1; k < seconds.size(); ++k) sum += (seconds[k] - seconds[k - 1]) * (seconds[k] - seconds[k - 1]);
+        for (std::size_t k = 1; k < seconds.size(); ++k)
+          sum += (seconds[k] - seconds[k - 1]) * (seconds[k] - seconds[k - 1]);
         c.noise_A_sqrt_s = std::sqrt(sum / (2.0 * static_cast<double>(seconds.size() - 1)));
       }
       row.channels.push_back(std::move(c));

@@ -14,9 +14,9 @@ namespace {
 
 const std::map<std::string, std::pair<std::string, double>, std::less<>>& whole_units() {
   static const std::map<std::string, std::pair<std::string, double>, std::less<>> units = {
-      {"1", {"1", 1}},         {"%", {"1", 1e-2}},        {"ppm", {"1", 1e-6}},         {"min", {"s", 60}},
-      {"h", {"s", 3600}},      {"degC", {"degC", 1}},     {"K", {"degC", 1}},           {"degC/s", {"degC/s", 1}},
-      {"degC/min", {"degC/s", 1.0 / 60}}};
+      {"1", {"1", 1}},    {"%", {"1", 1e-2}},        {"ppm", {"1", 1e-6}},
+      {"min", {"s", 60}}, {"h", {"s", 3600}},        {"degC", {"degC", 1}},
+      {"K", {"degC", 1}}, {"degC/s", {"degC/s", 1}}, {"degC/min", {"degC/s", 1.0 / 60}}};
   return units;
 }
 
@@ -45,8 +45,10 @@ Unit parse_unit(std::string_view text, const std::string& where) {
     if (text.ends_with(base))
       if (const double factor = prefix_factor(text.substr(0, text.size() - base.size())); factor > 0)
         return {std::string(text), std::string(base), factor};
-  throw UserError(fmt::format("{}: unit \"{}\": expected A, V, C, Hz or s with n, u, m, k or M, or min, h, degC, degC/min, "
-                              "%, ppm", where, text));
+  throw UserError(fmt::format(
+      "{}: unit \"{}\": expected A, V, C, Hz or s with n, u, m, k or M, or min, h, degC, degC/min, "
+      "%, ppm",
+      where, text));
 }
 
 Quantity parse_quantity(std::string_view text, std::string_view base, const std::string& where) {

@@ -6,9 +6,9 @@
 namespace waverig::rig::bench {
 
 struct Unit {
-  std::string text;        // as written: "uA"
-  std::string base;        // what it measures, as its SI unit: "A"; "1" for a bare number
-  double factor = 1;       // SI = factor * number
+  std::string text;   // as written: "uA"
+  std::string base;   // what it measures, as its SI unit: "A"; "1" for a bare number
+  double factor = 1;  // SI = factor * number
 };
 
 struct Quantity {
@@ -23,6 +23,6 @@ Quantity parse_quantity(std::string_view text, std::string_view base, const std:
 
 // "500 uA" from 5e-4 and "A": a prefix that leaves 1 to 999 before it.
 std::string show_quantity(double si, std::string_view base);
-std::string show_duration(double seconds);   // "38 h 02 min", "4 min 10 s", "12.5 s"
+std::string show_duration(double seconds);  // "38 h 02 min", "4 min 10 s", "12.5 s"
 
 }  // namespace waverig::rig::bench

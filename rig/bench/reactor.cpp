@@ -11,23 +11,30 @@
 namespace waverig::rig::bench {
 namespace {
 
-// No byte and no turn for so long in real time: a byte was lost between the two sides, e.g. with a closed connection.
+// No byte and no turn for so long in real time: a byte was lost between the two sides, e.g. with a closed
+// connection.
 constexpr auto kWatchdog = std::chrono::seconds(5);
 
 std::int64_t steady_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace
 
 Reactor::Reactor(VirtualTime* time, const std::atomic<bool>* stop) : time_(time), stop_(stop) {
   real_offset_us_ = std::chrono::duration_cast<std::chrono::microseconds>(
-                        std::chrono::system_clock::now().time_since_epoch()).count() - steady_us();
+                        std::chrono::system_clock::now().time_since_epoch())
+                        .count() -
+                    steady_us();
 }
 
 std::int64_t Reactor::now() const { return time_ != nullptr ? time_->now() : steady_us() + real_offset_us_; }
 
-void Reactor::serve(int descriptor, std::function<void()> on_readable) { served_[descriptor] = std::move(on_readable); }
+void Reactor::serve(int descriptor, std::function<void()> on_readable) {
+  served_[descriptor] = std::move(on_readable);
+}
 void Reactor::forget(int descriptor) { served_.erase(descriptor); }
 
 bool Reactor::poll_once(int descriptor, int timeout_ms) {
@@ -79,7 +86,8 @@ bool Reactor::wait_readable(int descriptor, std::int64_t deadline_utime) {
   }
 }
 
-bool Reactor::run_until(std::int64_t deadline_utime, const std::function<bool()>& on_turn, std::int64_t slice_us) {
+bool Reactor::run_until(std::int64_t deadline_utime, const std::function<bool()>& on_turn,
+                        std::int64_t slice_us) {
   while (true) {
     if (time_ != nullptr) settle(-1);
     const bool over = now() >= deadline_utime;

@@ -1,5 +1,5 @@
-// Reactor: the bench's one place where it waits, in real or virtual time. While it waits for anything it serves the
-// ports that never pause, so that no frame is lost behind an instrument that takes its time.
+// Reactor: the bench's one place where it waits, in real or virtual time. While it waits for anything it
+// serves the ports that never pause, so that no frame is lost behind an instrument that takes its time.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -23,7 +23,7 @@ class Reactor {
   // Whether waits end by it: a tear-down goes through to its end whatever the user does.
   void heed_stop(bool heed) { heeds_stop_ = heed; }
 
-  std::int64_t now() const;   // microseconds since 1970, UTC; it never jumps back
+  std::int64_t now() const;  // microseconds since 1970, UTC; it never jumps back
   VirtualTime* virtual_time() const { return time_; }
 
   // on_readable is called whenever the descriptor has something, during any wait.
@@ -33,13 +33,15 @@ class Reactor {
   // True as soon as the descriptor is readable (or at its end), false at the deadline.
   bool wait_readable(int descriptor, std::int64_t deadline_utime);
   void sleep_until(std::int64_t utime);
-  // Calls on_turn whenever something was served or time went on by a slice; ends when it returns true, or false at the
-  // deadline.
+  // Calls on_turn whenever something was served or time went on by a slice; ends when it returns true, or
+  // false at the deadline.
   static constexpr std::int64_t kSlice_us = 10'000'000;
-  bool run_until(std::int64_t deadline_utime, const std::function<bool()>& on_turn, std::int64_t slice_us = kSlice_us);
+  bool run_until(std::int64_t deadline_utime, const std::function<bool()>& on_turn,
+                 std::int64_t slice_us = kSlice_us);
 
  private:
-  // Virtual time: serves until the laboratory is quiet; true as soon as the descriptor (-1: none) is readable.
+  // Virtual time: serves until the laboratory is quiet; true as soon as the descriptor (-1: none) is
+  // readable.
   bool settle(int descriptor);
   void advance(std::int64_t limit_utime, std::int64_t slice_us);
   // Real time: one round of waiting.

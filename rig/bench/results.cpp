@@ -10,7 +10,7 @@
 namespace waverig::rig::bench {
 namespace {
 
-constexpr double kStep_degC = 1;   // between the temperatures that are looked at
+constexpr double kStep_degC = 1;  // between the temperatures that are looked at
 
 template <class Value>
 double largest(const estimator::TemperatureLaw& over, Value&& value) {
@@ -33,8 +33,11 @@ const ChannelAnalysis* analysis_of(const Analysis& analysis, const std::string& 
 
 // What the law says at its reference temperature: value, k = 2, slope.
 std::string law_columns(const estimator::TemperatureLaw& law, double factor) {
-  const auto c = [&](Eigen::Index i) { return law.coefficients.size() > i ? factor * law.coefficients[i] : 0.0; };
-  return fmt::format("{:.6g},{:.4g},{:.6g},{}", c(0), 2 * factor * law.sigma_at(law.reference_degC), c(1), law.order());
+  const auto c = [&](Eigen::Index i) {
+    return law.coefficients.size() > i ? factor * law.coefficients[i] : 0.0;
+  };
+  return fmt::format("{:.6g},{:.4g},{:.6g},{}", c(0), 2 * factor * law.sigma_at(law.reference_degC), c(1),
+                     law.order());
 }
 
 struct Suite {
@@ -67,7 +70,9 @@ std::string shown(double value, const std::string& base) {
 }
 
 double scale_expanded(const estimator::FrontEndChannel& channel) {
-  return largest(channel.dsf_N, [&](double T) { return 2 * std::max(channel.dsf_N.sigma_at(T), channel.dsf_P.sigma_at(T)); });
+  return largest(channel.dsf_N, [&](double T) {
+    return 2 * std::max(channel.dsf_N.sigma_at(T), channel.dsf_P.sigma_at(T));
+  });
 }
 
 double bias_expanded_A(const estimator::FrontEndChannel& channel) {
@@ -80,32 +85,38 @@ std::vector<Verdict> hold_against_limits(const Sequence& sequence, const Analysi
     const UnitDescription::Channel& design = *sequence.laboratory.unit.channel(measured.channel);
     const estimator::FrontEndChannel& channel = analysis.calibration.channel(measured.channel);
     if (!measured.scale_factors.empty())
-      verdicts.push_back({measured.channel, "scale factor", scale_expanded(channel), design.scale_limit, "1"});
-    if (measured.bias) verdicts.push_back({measured.channel, "bias", bias_expanded_A(channel), design.bias_limit_A, "A"});
+      verdicts.push_back(
+          {measured.channel, "scale factor", scale_expanded(channel), design.scale_limit, "1"});
+    if (measured.bias)
+      verdicts.push_back({measured.channel, "bias", bias_expanded_A(channel), design.bias_limit_A, "A"});
   }
   return verdicts;
 }
 
 std::string table_of(const std::vector<Verdict>& verdicts) {
-  std::string text = fmt::format("{:<10} {:<14} {:>14} {:>12}\n", "channel", "quantity", "U (k = 2)", "limit");
+  std::string text =
+      fmt::format("{:<10} {:<14} {:>14} {:>12}\n", "channel", "quantity", "U (k = 2)", "limit");
   for (const Verdict& v : verdicts)
-    text += fmt::format("{:<10} {:<14} {:>14} {:>12}  {}\n", v.channel, v.quantity, shown(v.value, v.base), shown(v.limit, v.base),
-                        v.passed() ? "" : "exceeded");
+    text += fmt::format("{:<10} {:<14} {:>14} {:>12}  {}\n", v.channel, v.quantity, shown(v.value, v.base),
+                        shown(v.limit, v.base), v.passed() ? "" : "exceeded");
   return text;
 }
 
 std::string channels_csv(const Analysis& analysis) {
-  std::string text = "channel,K_N0_C,dsf_N_ppm,dsf_N_U_ppm,dsf_N_ppm_per_degC,dsf_N_order,K_P0_C,dsf_P_ppm,dsf_P_U_ppm,"
-                     "dsf_P_ppm_per_degC,dsf_P_order,bias_nA,bias_U_nA,bias_nA_per_degC,bias_order,hysteresis_nA,"
-                     "reference_degC,from_degC,to_degC,scale_largest_U_ppm,bias_largest_U_nA\n";
+  std::string text =
+      "channel,K_N0_C,dsf_N_ppm,dsf_N_U_ppm,dsf_N_ppm_per_degC,dsf_N_order,K_P0_C,dsf_P_ppm,dsf_P_U_ppm,"
+      "dsf_P_ppm_per_degC,dsf_P_order,bias_nA,bias_U_nA,bias_nA_per_degC,bias_order,hysteresis_nA,"
+      "reference_degC,from_degC,to_degC,scale_largest_U_ppm,bias_largest_U_nA\n";
   for (const estimator::FrontEndChannel& c : analysis.calibration.channels) {
     const ChannelAnalysis* measured = analysis_of(analysis, c.name);
     const bool bias = measured != nullptr && measured->bias.has_value();
-    const bool scale = c.dsf_N.covariance(0, 0) > 0;   // measured now, or taken over from an earlier calibration
+    const bool scale =
+        c.dsf_N.covariance(0, 0) > 0;  // measured now, or taken over from an earlier calibration
     const estimator::TemperatureLaw& over = bias ? c.bias_A : c.dsf_N;
     text += fmt::format("{},{:.9g},{},{:.9g},{},{},{},{:g},{:.3g},{:.3g},{},{}\n", c.name, c.K_N0_C,
-                        scale ? law_columns(c.dsf_N, 1e6) : ",,,", c.K_P0_C, scale ? law_columns(c.dsf_P, 1e6) : ",,,",
-                        bias ? law_columns(c.bias_A, 1e9) : ",,,", bias ? fmt::format("{:.4g}", 1e9 * measured->bias->hysteresis_A) : "",
+                        scale ? law_columns(c.dsf_N, 1e6) : ",,,", c.K_P0_C,
+                        scale ? law_columns(c.dsf_P, 1e6) : ",,,", bias ? law_columns(c.bias_A, 1e9) : ",,,",
+                        bias ? fmt::format("{:.4g}", 1e9 * measured->bias->hysteresis_A) : "",
                         over.reference_degC, over.from_degC, over.to_degC,
                         scale ? fmt::format("{:.4g}", 1e6 * scale_expanded(c)) : "",
                         bias ? fmt::format("{:.4g}", 1e9 * bias_expanded_A(c)) : "");
@@ -116,8 +127,9 @@ std::string channels_csv(const Analysis& analysis) {
 std::string steps_csv(const Store& store) {
   std::string text = "index,attempt,section,path,step,place,outcome,started,ended,value_si,limits,message\n";
   for (const StepRow& s : store.steps())
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", s.index, s.attempt, s.section, quoted(s.path), quoted(s.what),
-                        quoted(s.where), name_of(s.outcome), iso_time(s.started_utime), iso_time(s.ended_utime),
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", s.index, s.attempt, s.section,
+                        quoted(s.path), quoted(s.what), quoted(s.where), name_of(s.outcome),
+                        iso_time(s.started_utime), iso_time(s.ended_utime),
                         s.value ? fmt::format("{:.9g}", *s.value) : "", quoted(s.limits), quoted(s.message));
   return text;
 }
@@ -130,7 +142,8 @@ std::string junit_xml(const Sequence& sequence, const Store& store, const std::v
   Suite channels(root, "channels");
   for (const Verdict& v : verdicts) {
     pugi::xml_node test = channels.add(v.channel, v.quantity);
-    const std::string said = fmt::format("expanded uncertainty (k = 2) {}: expected at most {}", shown(v.value, v.base), shown(v.limit, v.base));
+    const std::string said = fmt::format("expanded uncertainty (k = 2) {}: expected at most {}",
+                                         shown(v.value, v.base), shown(v.limit, v.base));
     if (!v.passed()) channels.fail(test, said);
     test.append_child("system-out").text() = said.c_str();
   }
@@ -144,7 +157,8 @@ std::string junit_xml(const Sequence& sequence, const Store& store, const std::v
     const bool failed = s.outcome == StepOutcome::kFailed || s.outcome == StepOutcome::kAccepted;
     if (s.limits.empty() && !failed) continue;
     pugi::xml_node test = steps.add(s.path.empty() ? s.section : s.path, fmt::format("{} {}", index, s.what));
-    test.append_attribute("time") = fmt::format("{:.3f}", 1e-6 * static_cast<double>(s.ended_utime - s.started_utime)).c_str();
+    test.append_attribute("time") =
+        fmt::format("{:.3f}", 1e-6 * static_cast<double>(s.ended_utime - s.started_utime)).c_str();
     if (failed) steps.fail(test, s.message);
     if (!s.limits.empty()) test.append_child("system-out").text() = s.limits.c_str();
   }

@@ -1,5 +1,5 @@
-// What a bench leaves beside its store for people and for other programs: the calibration file, a row a channel (CSV),
-// a row a step (CSV), and the limits as JUnit XML.
+// What a bench leaves beside its store for people and for other programs: the calibration file, a row a
+// channel (CSV), a row a step (CSV), and the limits as JUnit XML.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -11,17 +11,17 @@ namespace waverig::rig::bench {
 
 // A channel's result held against the unit's specification (laboratory file: scale_limit, bias_limit).
 struct Verdict {
-  std::string channel, quantity;   // "scale factor", "bias"
-  double value = 0, limit = 0;     // the largest expanded uncertainty (k = 2) over the calibrated temperatures
-  std::string base;                // SI unit of both
+  std::string channel, quantity;  // "scale factor", "bias"
+  double value = 0, limit = 0;    // the largest expanded uncertainty (k = 2) over the calibrated temperatures
+  std::string base;               // SI unit of both
   bool passed() const { return value <= limit; }
 };
-std::string shown(double value, const std::string& base);   // relative ("1") in ppm, currents ("A") in nA
+std::string shown(double value, const std::string& base);  // relative ("1") in ppm, currents ("A") in nA
 std::vector<Verdict> hold_against_limits(const Sequence& sequence, const Analysis& analysis);
-std::string table_of(const std::vector<Verdict>& verdicts);            // as the terminal shows it
+std::string table_of(const std::vector<Verdict>& verdicts);  // as the terminal shows it
 
 // Largest over the temperatures that were calibrated, k = 2.
-double scale_expanded(const estimator::FrontEndChannel& channel);      // relative, of the worse reset current
+double scale_expanded(const estimator::FrontEndChannel& channel);  // relative, of the worse reset current
 double bias_expanded_A(const estimator::FrontEndChannel& channel);
 
 std::string channels_csv(const Analysis& analysis);

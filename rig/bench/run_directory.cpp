@@ -15,7 +15,8 @@ constexpr const char* kSequenceDirectory = "sequence";
 
 std::vector<fs::path> files_behind(const Sequence& sequence) {
   std::vector<fs::path> files = {fs::absolute(sequence.file).lexically_normal()};
-  for (const fs::path& file : sequence.laboratory.files) files.push_back(fs::absolute(file).lexically_normal());
+  for (const fs::path& file : sequence.laboratory.files)
+    files.push_back(fs::absolute(file).lexically_normal());
   return files;
 }
 
@@ -41,7 +42,9 @@ std::string keep_files(const Sequence& sequence, const fs::path& out) {
     std::error_code error;
     fs::create_directories(copy.parent_path(), error);
     if (!error) fs::copy_file(file, copy, fs::copy_options::overwrite_existing, error);
-    if (error) throw UserError(fmt::format("{}: {}: expected to write a copy of {}", copy.string(), error.message(), file.string()));
+    if (error)
+      throw UserError(fmt::format("{}: {}: expected to write a copy of {}", copy.string(), error.message(),
+                                  file.string()));
   }
   return (kSequenceDirectory / files.front().lexically_relative(common)).string();
 }
@@ -49,12 +52,14 @@ std::string keep_files(const Sequence& sequence, const fs::path& out) {
 Sequence kept_sequence(const fs::path& out, const RunInfo& info) {
   Sequence sequence = load_sequence(out / info.sequence);
   if (sequence.fingerprints != info.files)
-    throw UserError(fmt::format("{}: it or a file that it includes has changed since the run: expected them as the run kept them",
-                                (out / info.sequence).string()));
+    throw UserError(fmt::format(
+        "{}: it or a file that it includes has changed since the run: expected them as the run kept them",
+        (out / info.sequence).string()));
   return sequence;
 }
 
-std::optional<Analysis> analyse_run(const Sequence& sequence, const Store& store, const estimator::FrontEndCalibration* known) {
+std::optional<Analysis> analyse_run(const Sequence& sequence, const Store& store,
+                                    const estimator::FrontEndCalibration* known) {
   if (sequence.procedure == "none") return std::nullopt;
   Analysis analysis = analyse(sequence, store, known);
   if (known != nullptr) analysis.calibration = merge(*known, analysis.calibration);

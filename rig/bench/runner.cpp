@@ -12,7 +12,7 @@ namespace waverig::rig::bench {
 namespace {
 
 constexpr double kRetryPause_s = 5;
-constexpr double kRecordingSlice_s = 0.02;   // of virtual time, about a recording's end
+constexpr double kRecordingSlice_s = 0.02;  // of virtual time, about a recording's end
 
 std::int64_t microseconds(double seconds) { return std::llround(seconds * 1e6); }
 
@@ -35,15 +35,21 @@ std::string describe_action(const PlannedStep& step) {
   if (!step.instrument.empty()) text += " " + step.instrument + "." + step.name;
   if (step.verb == Verb::kSet) text += " " + step.value;
   if (step.verb == Verb::kWait) text += " " + show_duration(step.duration_s);
-  if (step.verb == Verb::kRecord) text += fmt::format(" {} {}", fmt::join(step.ports, "+"), show_duration(step.duration_s));
+  if (step.verb == Verb::kRecord)
+    text += fmt::format(" {} {}", fmt::join(step.ports, "+"), show_duration(step.duration_s));
   if (step.verb == Verb::kPrompt) text += " \"" + step.text + "\"";
   return text;
 }
 
 Runner::Runner(const Sequence& sequence, Reactor& reactor, Store& store, RunnerHooks hooks)
-    : sequence_(sequence), reactor_(reactor), store_(store), hooks_(std::move(hooks)), instruments_(sequence.laboratory, reactor) {
+    : sequence_(sequence),
+      reactor_(reactor),
+      store_(store),
+      hooks_(std::move(hooks)),
+      instruments_(sequence.laboratory, reactor) {
   remaining_s_.resize(sequence.plan.size() + 1);
-  for (std::size_t i = sequence.plan.size(); i-- > 0;) remaining_s_[i] = remaining_s_[i + 1] + sequence.plan[i].expected_s;
+  for (std::size_t i = sequence.plan.size(); i-- > 0;)
+    remaining_s_[i] = remaining_s_[i + 1] + sequence.plan[i].expected_s;
 }
 
 std::string Runner::run(bool resume) {
@@ -56,8 +62,10 @@ std::string Runner::run(bool resume) {
     follow_ports();
     if (resume) go_on();
     store_.set_outcome("running");
-    for (; next_ < sequence_.plan.size() && sequence_.plan[next_].section != Section::kTeardown; ++next_) carry_out(next_);
-  } catch (const std::runtime_error& error) {   // instruments, rules, the user: whatever it is, leave everything safe
+    for (; next_ < sequence_.plan.size() && sequence_.plan[next_].section != Section::kTeardown; ++next_)
+      carry_out(next_);
+  } catch (const std::runtime_error& error) {
+    // Instruments, rules, the user: whatever it is, leave everything safe.
     aborted = true;
     outcome = error.what();
     if (hooks_.clear_stop) hooks_.clear_stop();
@@ -91,18 +99,20 @@ void Runner::look_back() {
   }
   for (const TraceRow& t : store_.trace()) traced_[t.port] = t.utime / microseconds(kTracePeriod_s);
   for (const auto& [name, frame] : store_.resume_state().last_frames)
-    if (const auto port = instruments_.ports().find(name); port != instruments_.ports().end()) port->second->set_last_frame(frame);
+    if (const auto port = instruments_.ports().find(name); port != instruments_.ports().end())
+      port->second->set_last_frame(frame);
 }
 
 // The run was killed, or ended: the instruments may have forgotten everything. Nothing is measured here.
 void Runner::go_on() {
-  std::map<std::string, std::size_t> last_of;   // each setting as it was told last
+  std::map<std::string, std::size_t> last_of;  // each setting as it was told last
   const PlannedStep* last_wait = nullptr;
   for (std::size_t i = 0; i < next_; ++i) {
     const PlannedStep& step = sequence_.plan[i];
     if (step.verb == Verb::kSet) last_of[step.instrument + "." + step.name] = i;
     if (step.verb == Verb::kUntil) last_wait = &step;
-    if (step.verb == Verb::kSet && last_wait != nullptr && step.instrument == last_wait->instrument) last_wait = nullptr;
+    if (step.verb == Verb::kSet && last_wait != nullptr && step.instrument == last_wait->instrument)
+      last_wait = nullptr;
   }
   std::vector<std::size_t> again;
   for (const auto& [target, index] : last_of) again.push_back(index);
@@ -140,7 +150,8 @@ void Runner::carry_out(std::size_t index) {
     alarm_ = fault;
     const bool last = tries >= step.retries;
     if (last && !step.abort) ++failures_;
-    commit(step, last && !step.abort ? StepOutcome::kAccepted : StepOutcome::kFailed, fault, started, std::move(measured));
+    commit(step, last && !step.abort ? StepOutcome::kAccepted : StepOutcome::kFailed, fault, started,
+           std::move(measured));
     report(step);
     if (last && step.abort) throw EndRun(fmt::format("{}: {}: {}", step.where, describe_action(step), fault));
     if (last) return;
@@ -181,7 +192,8 @@ Runner::Measured Runner::attempt(const PlannedStep& step) {
   return measured;
 }
 
-// recheck: after an interruption. If it still holds at the first look nothing has moved, and the run goes on at once.
+// recheck: after an interruption. If it still holds at the first look nothing has moved, and the run goes on
+// at once.
 double Runner::wait_until(const PlannedStep& step, bool recheck) {
   const std::int64_t deadline = reactor_.now() + microseconds(step.timeout_s);
   std::int64_t holds_since = -1;
@@ -195,23 +207,29 @@ double Runner::wait_until(const PlannedStep& step, bool recheck) {
     if (holds && now - holds_since >= microseconds(step.duration_s)) return value;
     if (now >= deadline)
       throw InstrumentError(FaultKind::kTimeout, step.instrument,
-                            fmt::format("{} = {:.4g} after {}: expected {:g} within {:g} for {}", step.name, value,
-                                        show_duration(step.timeout_s), step.near_si, step.within_si, show_duration(step.duration_s)));
+                            fmt::format("{} = {:.4g} after {}: expected {:g} within {:g} for {}", step.name,
+                                        value, show_duration(step.timeout_s), step.near_si, step.within_si,
+                                        show_duration(step.duration_s)));
     reactor_.sleep_until(std::min(deadline, now + microseconds(step.poll_s)));
   }
 }
 
 Runner::Measured Runner::record(const PlannedStep& step) {
   const std::int64_t start = reactor_.now();
-  for (const std::string& port : step.ports) instruments_.port(port).begin(step.channels, step.duration_s, step.join, step.keep);
+  for (const std::string& port : step.ports)
+    instruments_.port(port).begin(step.channels, step.duration_s, step.join, step.keep);
   const auto complete = [&] {
-    return std::ranges::all_of(step.ports, [&](const std::string& port) { return instruments_.port(port).complete(); });
+    return std::ranges::all_of(step.ports,
+                               [&](const std::string& port) { return instruments_.port(port).complete(); });
   };
-  const std::int64_t end = start + microseconds(step.duration_s), deadline = end + microseconds(step.timeout_s);
+  const std::int64_t end = start + microseconds(step.duration_s),
+                     deadline = end + microseconds(step.timeout_s);
   bool all = reactor_.run_until(end, complete);
-  // A slow port's last frame may be a whole period away, a fast one's is not: wait finely at first, then coarsely.
+  // A slow port's last frame may be a whole period away, a fast one's is not: wait finely at first, then
+  // coarsely.
   all = all || reactor_.run_until(std::min(deadline, end + microseconds(1)), complete) ||
-        reactor_.run_until(std::min(deadline, end + microseconds(0.5)), complete, microseconds(kRecordingSlice_s)) ||
+        reactor_.run_until(std::min(deadline, end + microseconds(0.5)), complete,
+                           microseconds(kRecordingSlice_s)) ||
         reactor_.run_until(deadline, complete, microseconds(1));
   Measured measured;
   for (const std::string& name : step.ports) {
@@ -219,10 +237,11 @@ Runner::Measured Runner::record(const PlannedStep& step) {
     const bool whole = port.complete();
     RecordingRow row = port.finish();
     if (!whole)
-      throw InstrumentError(FaultKind::kData, name,
-                            fmt::format("{} good frames, {} broken, {} of {} after {}", row.frames, row.broken,
-                                        show_duration(static_cast<double>(row.ticks) * sequence_.laboratory.unit.tick_s),
-                                        show_duration(step.duration_s), show_duration(step.duration_s + step.timeout_s)));
+      throw InstrumentError(
+          FaultKind::kData, name,
+          fmt::format("{} good frames, {} broken, {} of {} after {}", row.frames, row.broken,
+                      show_duration(static_cast<double>(row.ticks) * sequence_.laboratory.unit.tick_s),
+                      show_duration(step.duration_s), show_duration(step.duration_s + step.timeout_s)));
     row.tags = step.tags;
     judge(step, row, measured);
     measured.recordings.push_back(std::move(row));
@@ -234,14 +253,18 @@ void Runner::judge(const PlannedStep& step, double value, Measured& measured) co
   for (const Limit& limit : step.limits) {
     measured.limits += (measured.limits.empty() ? "" : "; ") + show(limit, value);
     if (!(value >= limit.low_si && value <= limit.high_si))
-      measured.violation = InstrumentError(FaultKind::kOutOfRange, step.instrument, show(limit, value)).what();
+      measured.violation =
+          InstrumentError(FaultKind::kOutOfRange, step.instrument, show(limit, value)).what();
   }
 }
 
 void Runner::judge(const PlannedStep& step, const RecordingRow& row, Measured& measured) const {
   for (const Limit& limit : step.limits) {
     double value = 0;
-    if (limit.of == "lost") value = row.frames + row.lost > 0 ? static_cast<double>(row.lost) / static_cast<double>(row.frames + row.lost) : 0;
+    if (limit.of == "lost")
+      value = row.frames + row.lost > 0
+                  ? static_cast<double>(row.lost) / static_cast<double>(row.frames + row.lost)
+                  : 0;
     if (limit.of == "temperature") value = row.temperature;
     if (limit.of == "temperature_span") value = row.temperature_span;
     if ((limit.of == "current" || limit.of == "noise") && row.channels.empty()) continue;
@@ -254,12 +277,15 @@ void Runner::judge(const PlannedStep& step, const RecordingRow& row, Measured& m
     }
     measured.limits += (measured.limits.empty() ? "" : "; ") + show(limit, value);
     if (!(value >= limit.low_si && value <= limit.high_si))
-      measured.violation = InstrumentError(limit.of == "lost" ? FaultKind::kData : FaultKind::kOutOfRange, row.port, show(limit, value)).what();
+      measured.violation = InstrumentError(limit.of == "lost" ? FaultKind::kData : FaultKind::kOutOfRange,
+                                           row.port, show(limit, value))
+                               .what();
   }
 }
 
-void Runner::commit(const PlannedStep& step, StepOutcome outcome, const std::string& message, std::int64_t started, Measured measured) {
-  reactor_.sleep_until(reactor_.now());   // the simulated laboratory comes to rest before its state is kept
+void Runner::commit(const PlannedStep& step, StepOutcome outcome, const std::string& message,
+                    std::int64_t started, Measured measured) {
+  reactor_.sleep_until(reactor_.now());  // the simulated laboratory comes to rest before its state is kept
   StepRow row;
   row.index = step.index;
   row.attempt = attempts_[step.index];
@@ -307,7 +333,9 @@ void Runner::tear_down(bool aborted) {
       alarm_ = fault;
       ++failures_;
     }
-    const StepOutcome outcome = !fault.empty() ? StepOutcome::kFailed : aborted ? StepOutcome::kMadeSafe : StepOutcome::kDone;
+    const StepOutcome outcome = !fault.empty() ? StepOutcome::kFailed
+                                : aborted      ? StepOutcome::kMadeSafe
+                                               : StepOutcome::kDone;
     commit(step, outcome, fault, started, std::move(measured));
   }
   for (const std::string& complaint : instruments_.make_safe()) {
@@ -319,8 +347,8 @@ void Runner::tear_down(bool aborted) {
 
 void Runner::report(const PlannedStep& step) {
   if (!hooks_.progress) return;
-  hooks_.progress({&step, sequence_.plan.size(), remaining_s_[static_cast<std::size_t>(step.index)], reactor_.now(),
-                   failures_, alarm_});
+  hooks_.progress({&step, sequence_.plan.size(), remaining_s_[static_cast<std::size_t>(step.index)],
+                   reactor_.now(), failures_, alarm_});
 }
 
 }  // namespace waverig::rig::bench

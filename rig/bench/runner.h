@@ -1,5 +1,5 @@
-// Runner: carries a sequence out, step by step, each committed before the next; ends safely on every path; goes on
-// where it was when it was killed.
+// Runner: carries a sequence out, step by step, each committed before the next; ends safely on every path;
+// goes on where it was when it was killed.
 #pragma once
 #include <functional>
 #include <optional>
@@ -17,16 +17,16 @@ struct Progress {
   double remaining_s = 0;
   std::int64_t utime = 0;
   int failures = 0;
-  std::string alarm;                        // the last one
+  std::string alarm;  // the last one
 };
 
 // What a runner asks of its surroundings; all may be left out.
 struct RunnerHooks {
   std::function<void(const Progress&)> progress;
-  std::function<bool(const PlannedStep&)> prompt;      // true: go on; without it the unattended default holds
-  std::function<void(const TraceRow&)> trace;          // every kTracePeriod_s of each port, as it comes
-  std::function<std::string()> world_snapshot;         // of a simulated laboratory, kept with each step
-  std::function<void()> clear_stop;                    // after an interruption: the tear-down may wait again
+  std::function<bool(const PlannedStep&)> prompt;  // true: go on; without it the unattended default holds
+  std::function<void(const TraceRow&)> trace;      // every kTracePeriod_s of each port, as it comes
+  std::function<std::string()> world_snapshot;     // of a simulated laboratory, kept with each step
+  std::function<void()> clear_stop;                // after an interruption: the tear-down may wait again
 };
 
 inline constexpr double kTracePeriod_s = 20;
@@ -35,8 +35,8 @@ class Runner {
  public:
   Runner(const Sequence& sequence, Reactor& reactor, Store& store, RunnerHooks hooks = {});
 
-  // From the first step, or (resume) from the first one that is not done. Returns the outcome as the store has it:
-  // "done", "done with failures", or why it ended.
+  // From the first step, or (resume) from the first one that is not done. Returns the outcome as the store
+  // has it: "done", "done with failures", or why it ended.
   std::string run(bool resume);
   Instruments& instruments() { return instruments_; }
 
@@ -45,19 +45,20 @@ class Runner {
     std::vector<RecordingRow> recordings;
     std::optional<double> value;
     std::string limits;
-    std::string violation;                  // of a limit
+    std::string violation;  // of a limit
   };
 
-  void follow_ports();                      // keeps the trace
-  void look_back();                         // what is done already
-  void go_on();                             // tells again what sets state, as far as the run had come
-  void carry_out(std::size_t index);        // with its retries; throws where the rule is to end
+  void follow_ports();                // keeps the trace
+  void look_back();                   // what is done already
+  void go_on();                       // tells again what sets state, as far as the run had come
+  void carry_out(std::size_t index);  // with its retries; throws where the rule is to end
   Measured attempt(const PlannedStep& step);
-  double wait_until(const PlannedStep& step, bool recheck);   // what it read last
+  double wait_until(const PlannedStep& step, bool recheck);  // what it read last
   Measured record(const PlannedStep& step);
   void judge(const PlannedStep& step, double value, Measured& measured) const;
   void judge(const PlannedStep& step, const RecordingRow& row, Measured& measured) const;
-  void commit(const PlannedStep& step, StepOutcome outcome, const std::string& message, std::int64_t started, Measured measured);
+  void commit(const PlannedStep& step, StepOutcome outcome, const std::string& message, std::int64_t started,
+              Measured measured);
   void tear_down(bool aborted);
   void report(const PlannedStep& step);
   double read(const PlannedStep& step);
@@ -68,14 +69,14 @@ class Runner {
   RunnerHooks hooks_;
   Instruments instruments_;
   std::size_t next_ = 0;
-  std::vector<double> remaining_s_;         // from each step on
-  std::map<int, int> attempts_;             // so far, by step
-  std::map<std::string, std::int64_t> traced_;   // by port: the last period that has its frame
-  std::vector<TraceRow> trace_;             // since the last commit
+  std::vector<double> remaining_s_;             // from each step on
+  std::map<int, int> attempts_;                 // so far, by step
+  std::map<std::string, std::int64_t> traced_;  // by port: the last period that has its frame
+  std::vector<TraceRow> trace_;                 // since the last commit
   int failures_ = 0;
   std::string alarm_;
 };
 
-std::string describe_action(const PlannedStep& step);   // "set calibrator.current 30 uA"
+std::string describe_action(const PlannedStep& step);  // "set calibrator.current 30 uA"
 
 }  // namespace waverig::rig::bench

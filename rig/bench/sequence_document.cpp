@@ -12,8 +12,8 @@ std::map<std::string, std::string> all_texts(TomlTable table) {
 RawStep read_step(TomlTable& table, int retries) {
   RawStep step;
   step.place = table.place_of("");
-  for (const char* key : {"set", "read", "wait", "until", "prompt", "for", "do", "value", "near", "within", "hold", "poll",
-                          "timeout", "expect", "duration", "unattended", "on_failure"})
+  for (const char* key : {"set", "read", "wait", "until", "prompt", "for", "do", "value", "near", "within",
+                          "hold", "poll", "timeout", "expect", "duration", "unattended", "on_failure"})
     if (table.has(key)) step.texts[key] = table.text(key, {});
   if (table.has("record")) {
     step.ports = table.texts("record", {});

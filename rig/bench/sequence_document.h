@@ -9,11 +9,11 @@
 
 namespace waverig::rig::bench {
 
-using Variables = std::map<std::string, std::string>;   // of the loops around a step, by name
+using Variables = std::map<std::string, std::string>;  // of the loops around a step, by name
 
 // One step as it stands in the file.
 struct RawStep {
-  std::string place;                       // FILE:LINE
+  std::string place;  // FILE:LINE
   std::map<std::string, std::string> texts;
   std::vector<std::string> channels, ports, in;
   std::vector<std::map<std::string, std::string>> limits;

@@ -17,7 +17,7 @@
 namespace waverig::rig::bench {
 namespace {
 
-constexpr std::size_t kLineMax = 1 << 20;   // no instrument of ours says more in one line
+constexpr std::size_t kLineMax = 1 << 20;  // no instrument of ours says more in one line
 
 std::int64_t microseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e6); }
 
@@ -73,7 +73,8 @@ void TcpLink::connect(double timeout_s) {
 
 void TcpLink::send(std::string_view bytes, double timeout_s) {
   if (!connected()) connect(timeout_s);
-  if (VirtualTime* time = reactor_.virtual_time(); time != nullptr) time->sent(cable_, static_cast<std::int64_t>(bytes.size()));
+  if (VirtualTime* time = reactor_.virtual_time(); time != nullptr)
+    time->sent(cable_, static_cast<std::int64_t>(bytes.size()));
   while (!bytes.empty()) {
     const ssize_t put = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (put > 0) {
@@ -98,7 +99,7 @@ std::string TcpLink::read_line(double timeout_s) {
     bool readable = false;
     try {
       readable = reactor_.wait_readable(descriptor_, deadline);
-    } catch (...) {   // stopped while an answer is under way: nobody may take it for that of the next question
+    } catch (...) {  // stopped while an answer is under way: nobody may take it for that of the next question
       close();
       throw;
     }
@@ -106,13 +107,16 @@ std::string TcpLink::read_line(double timeout_s) {
     std::array<char, 4096> bytes;
     const ssize_t got = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-    if (got <= 0) fail(FaultKind::kDisconnected, got == 0 ? "closed by the other side" : std::strerror(errno));
+    if (got <= 0)
+      fail(FaultKind::kDisconnected, got == 0 ? "closed by the other side" : std::strerror(errno));
     if (VirtualTime* time = reactor_.virtual_time(); time != nullptr) time->received(cable_, got);
     buffer_.append(bytes.data(), static_cast<std::size_t>(got));
   }
 }
 
-void ScpiTcpSession::write(const std::string& command, double timeout_s) { link_.send(command + "\n", timeout_s); }
+void ScpiTcpSession::write(const std::string& command, double timeout_s) {
+  link_.send(command + "\n", timeout_s);
+}
 
 std::string ScpiTcpSession::query(const std::string& command, double timeout_s) {
   link_.send(command + "\n", timeout_s);
@@ -143,7 +147,8 @@ void PrologixGateway::write(int gpib_address, const std::string& command, double
 std::string PrologixGateway::query(int gpib_address, const std::string& command, double timeout_s) {
   write(gpib_address, command, timeout_s);
   link_.send("++read eoi\n", timeout_s);
-  return link_.read_line(timeout_s);   // an absent instrument is silence; the link is closed and opened anew after it
+  // An absent instrument is silence; the link is closed and opened anew after it.
+  return link_.read_line(timeout_s);
 }
 
 void GpibSession::write(const std::string& command, double timeout_s) {
@@ -166,8 +171,10 @@ void Vxi11Session::connect(double timeout_s) {
   static const bool initialised = lxi_init() == LXI_OK;
   if (device_number_ >= 0) return;
   const int timeout_ms = static_cast<int>(timeout_s * 1000);
-  device_number_ = initialised ? lxi_connect(host_.c_str(), 0, device_.c_str(), timeout_ms, VXI11) : LXI_ERROR;
-  if (device_number_ < 0) throw InstrumentError(FaultKind::kRefused, who_, fmt::format("VXI-11 device {} at {}", device_, host_));
+  device_number_ =
+      initialised ? lxi_connect(host_.c_str(), 0, device_.c_str(), timeout_ms, VXI11) : LXI_ERROR;
+  if (device_number_ < 0)
+    throw InstrumentError(FaultKind::kRefused, who_, fmt::format("VXI-11 device {} at {}", device_, host_));
 }
 
 void Vxi11Session::close() {
@@ -178,17 +185,20 @@ void Vxi11Session::close() {
 void Vxi11Session::write(const std::string& command, double timeout_s) {
   connect(timeout_s);
   const std::string line = command + "\n";
-  if (lxi_send(device_number_, line.data(), static_cast<int>(line.size()), static_cast<int>(timeout_s * 1000)) ==
-      static_cast<int>(line.size()))
+  if (lxi_send(device_number_, line.data(), static_cast<int>(line.size()),
+               static_cast<int>(timeout_s * 1000)) == static_cast<int>(line.size()))
     return;
   close();
-  throw InstrumentError(FaultKind::kDisconnected, who_, fmt::format("VXI-11 device {} at {} took no command", device_, host_));
+  throw InstrumentError(FaultKind::kDisconnected, who_,
+                        fmt::format("VXI-11 device {} at {} took no command", device_, host_));
 }
 
 std::string Vxi11Session::query(const std::string& command, double timeout_s) {
   write(command, timeout_s);
-  std::array<char, 65536> answer;   // liblxi blocks; what the answer's delay brought meanwhile is served after it
-  const int size = lxi_receive(device_number_, answer.data(), static_cast<int>(answer.size()), static_cast<int>(timeout_s * 1000));
+  std::array<char, 65536>
+      answer;  // liblxi blocks; what the answer's delay brought meanwhile is served after it
+  const int size = lxi_receive(device_number_, answer.data(), static_cast<int>(answer.size()),
+                               static_cast<int>(timeout_s * 1000));
   reactor_.sleep_until(reactor_.now());
   if (size > 0) return without_end(std::string(answer.data(), static_cast<std::size_t>(size)));
   close();

@@ -1,5 +1,5 @@
-// Session: lines to an instrument and lines back, whatever lies between: raw SCPI over TCP, VXI-11 (liblxi), GPIB
-// behind a Prologix-protocol gateway, or a serial port that only listens.
+// Session: lines to an instrument and lines back, whatever lies between: raw SCPI over TCP, VXI-11 (liblxi),
+// GPIB behind a Prologix-protocol gateway, or a serial port that only listens.
 //
 // Addresses:  tcp://host:port     vxi11://host/device     gpib://GATEWAY/address     port://PORT
 #pragma once
@@ -32,7 +32,7 @@ class TcpLink {
   bool connected() const { return descriptor_ >= 0; }
   void connect(double timeout_s);
   void send(std::string_view bytes, double timeout_s);
-  std::string read_line(double timeout_s);   // without the line's end
+  std::string read_line(double timeout_s);  // without the line's end
   void close();
 
  private:
@@ -42,7 +42,7 @@ class TcpLink {
   std::string who_, host_;
   int port_;
   int descriptor_ = -1;
-  std::int64_t cable_ = 0;   // to VirtualTime
+  std::int64_t cable_ = 0;  // to VirtualTime
   std::string buffer_;
 };
 

@@ -48,10 +48,14 @@ std::vector<ChannelCounts> channels_of(const std::string& text) {
 
 const char* name_of(StepOutcome outcome) {
   switch (outcome) {
-    case StepOutcome::kDone: return "done";
-    case StepOutcome::kFailed: return "failed";
-    case StepOutcome::kAccepted: return "failed, went on";
-    case StepOutcome::kMadeSafe: return "made safe";
+    case StepOutcome::kDone:
+      return "done";
+    case StepOutcome::kFailed:
+      return "failed";
+    case StepOutcome::kAccepted:
+      return "failed, went on";
+    case StepOutcome::kMadeSafe:
+      return "made safe";
   }
   return "";
 }
@@ -59,7 +63,8 @@ const char* name_of(StepOutcome outcome) {
 namespace {
 
 [[noreturn]] void refuse(sqlite3* database) {
-  throw UserError(fmt::format("{}: {}: expected a bench store", sqlite3_db_filename(database, "main"), sqlite3_errmsg(database)));
+  throw UserError(fmt::format("{}: {}: expected a bench store", sqlite3_db_filename(database, "main"),
+                              sqlite3_errmsg(database)));
 }
 
 }  // namespace
@@ -74,10 +79,16 @@ struct Store::Statement {
   Statement& operator=(const Statement&) = delete;
 
   [[noreturn]] void fail() const { refuse(database_); }
-  Statement& bind(std::int64_t v) { return sqlite3_bind_int64(statement_, ++parameter_, v) == SQLITE_OK ? *this : (fail(), *this); }
-  Statement& bind(double v) { return sqlite3_bind_double(statement_, ++parameter_, v) == SQLITE_OK ? *this : (fail(), *this); }
+  Statement& bind(std::int64_t v) {
+    return sqlite3_bind_int64(statement_, ++parameter_, v) == SQLITE_OK ? *this : (fail(), *this);
+  }
+  Statement& bind(double v) {
+    return sqlite3_bind_double(statement_, ++parameter_, v) == SQLITE_OK ? *this : (fail(), *this);
+  }
   Statement& bind(const std::string& v) {
-    if (sqlite3_bind_text(statement_, ++parameter_, v.data(), static_cast<int>(v.size()), SQLITE_TRANSIENT) != SQLITE_OK) fail();
+    if (sqlite3_bind_text(statement_, ++parameter_, v.data(), static_cast<int>(v.size()), SQLITE_TRANSIENT) !=
+        SQLITE_OK)
+      fail();
     return *this;
   }
   Statement& bind_blob(const void* data, std::size_t size) {
@@ -132,25 +143,38 @@ void Store::execute(const char* sql) const {
 bool Store::begun(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return false;
   Store store(open_database(file, SQLITE_OPEN_READWRITE));
-  Statement made(store.database_, "SELECT user_version <> 0 OR EXISTS(SELECT * FROM sqlite_master) FROM pragma_user_version");
+  Statement made(store.database_,
+                 "SELECT user_version <> 0 OR EXISTS(SELECT * FROM sqlite_master) FROM pragma_user_version");
   return made.step() && made.integer() != 0;
 }
 
-// Whole under its own name or not at all: what a kill leaves behind has another name, and the next takes its place.
+// Whole under its own name or not at all: what a kill leaves behind has another name, and the next takes its
+// place.
 Store Store::create(const std::filesystem::path& file, const RunInfo& info) {
   if (begun(file))
-    throw UserError(fmt::format("{}: a run is there already: expected another directory, or --resume", file.string()));
+    throw UserError(
+        fmt::format("{}: a run is there already: expected another directory, or --resume", file.string()));
   const std::filesystem::path partial = file.string() + ".partial";
-  for (const char* rest : {".partial", ".partial-journal", ".partial-wal", ".partial-shm", "-journal", "-wal", "-shm"})
-    std::filesystem::remove(file.string() + rest);   // a journal of another file would be played into the new one
+  // A journal of another file would be played into the new one.
+  for (const char* rest :
+       {".partial", ".partial-journal", ".partial-wal", ".partial-shm", "-journal", "-wal", "-shm"})
+    std::filesystem::remove(file.string() + rest);
   {
     Store store(open_database(partial, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
     store.execute("PRAGMA synchronous = FULL; BEGIN IMMEDIATE;");
     store.execute(kSchema);
     store.execute(fmt::format("PRAGMA user_version = {};", kSchemaVersion).c_str());
     Statement(store.database_, "INSERT INTO run VALUES(?,?,?,?,?,?,?,?,?)")
-        .bind(info.title).bind(info.procedure).bind(info.version).bind(json_of(info.files)).bind(json_of(info.instruments))
-        .bind(info.started_utime).bind(std::int64_t{info.simulated}).bind(info.outcome).bind(info.sequence).step();
+        .bind(info.title)
+        .bind(info.procedure)
+        .bind(info.version)
+        .bind(json_of(info.files))
+        .bind(json_of(info.instruments))
+        .bind(info.started_utime)
+        .bind(std::int64_t{info.simulated})
+        .bind(info.outcome)
+        .bind(info.sequence)
+        .step();
     store.execute("COMMIT; PRAGMA journal_mode = WAL;");
   }
   std::filesystem::rename(partial, file);
@@ -158,7 +182,8 @@ Store Store::create(const std::filesystem::path& file, const RunInfo& info) {
 }
 
 Store Store::open(const std::filesystem::path& file) {
-  if (!begun(file)) throw UserError(fmt::format("{}: no run is there: expected a bench store", file.string()));
+  if (!begun(file))
+    throw UserError(fmt::format("{}: no run is there: expected a bench store", file.string()));
   Store store(open_database(file, SQLITE_OPEN_READWRITE));
   Statement version(store.database_, "PRAGMA user_version");
   if (!version.step() || version.integer() != kSchemaVersion)
@@ -170,26 +195,55 @@ Store Store::open(const std::filesystem::path& file) {
 Store::Store(Store&& other) noexcept : database_(std::exchange(other.database_, nullptr)) {}
 Store::~Store() { sqlite3_close(database_); }
 
-void Store::commit(const StepRow& s, const std::vector<RecordingRow>& recordings, const std::vector<TraceRow>& trace,
-                   const ResumeState& state) {
+void Store::commit(const StepRow& s, const std::vector<RecordingRow>& recordings,
+                   const std::vector<TraceRow>& trace, const ResumeState& state) {
   execute("BEGIN IMMEDIATE;");
   try {
-    Statement step(database_, "INSERT INTO step(idx,attempt,section,path,what,place,outcome,message,started,ended,value,limits)"
-                              " VALUES(?,?,?,?,?,?,?,?,?,?,?,?)");
-    step.bind(std::int64_t{s.index}).bind(std::int64_t{s.attempt}).bind(s.section).bind(s.path).bind(s.what).bind(s.where)
-        .bind(static_cast<std::int64_t>(s.outcome)).bind(s.message).bind(s.started_utime).bind(s.ended_utime);
+    Statement step(
+        database_,
+        "INSERT INTO step(idx,attempt,section,path,what,place,outcome,message,started,ended,value,limits)"
+        " VALUES(?,?,?,?,?,?,?,?,?,?,?,?)");
+    step.bind(std::int64_t{s.index})
+        .bind(std::int64_t{s.attempt})
+        .bind(s.section)
+        .bind(s.path)
+        .bind(s.what)
+        .bind(s.where)
+        .bind(static_cast<std::int64_t>(s.outcome))
+        .bind(s.message)
+        .bind(s.started_utime)
+        .bind(s.ended_utime);
     (s.value ? step.bind(*s.value) : step.bind_null()).bind(s.limits).step();
     for (const RecordingRow& r : recordings) {
       Statement recording(database_, "INSERT INTO recording VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
-      recording.bind(std::int64_t{r.index}).bind(std::int64_t{r.attempt}).bind(r.port).bind(json_of(r.tags)).bind(r.start_utime)
-          .bind(r.ticks).bind(r.clock).bind(r.reference).bind(r.frames).bind(r.lost).bind(r.broken).bind(r.temperature)
-          .bind(r.temperature_span).bind(json_of(r.channels)).bind_blob(r.data.data(), r.data.size()).step();
+      recording.bind(std::int64_t{r.index})
+          .bind(std::int64_t{r.attempt})
+          .bind(r.port)
+          .bind(json_of(r.tags))
+          .bind(r.start_utime)
+          .bind(r.ticks)
+          .bind(r.clock)
+          .bind(r.reference)
+          .bind(r.frames)
+          .bind(r.lost)
+          .bind(r.broken)
+          .bind(r.temperature)
+          .bind(r.temperature_span)
+          .bind(json_of(r.channels))
+          .bind_blob(r.data.data(), r.data.size())
+          .step();
     }
     for (const TraceRow& t : trace)
-      Statement(database_, "INSERT OR REPLACE INTO trace VALUES(?,?,?)").bind(t.port).bind(t.utime)
-          .bind_blob(t.raw.data(), t.raw.size() * sizeof t.raw.front()).step();
-    Statement(database_, "INSERT OR REPLACE INTO state VALUES(0,?,?,?)").bind(state.utime)
-        .bind_blob(state.world.data(), state.world.size()).bind(Json(state.last_frames).dump()).step();
+      Statement(database_, "INSERT OR REPLACE INTO trace VALUES(?,?,?)")
+          .bind(t.port)
+          .bind(t.utime)
+          .bind_blob(t.raw.data(), t.raw.size() * sizeof t.raw.front())
+          .step();
+    Statement(database_, "INSERT OR REPLACE INTO state VALUES(0,?,?,?)")
+        .bind(state.utime)
+        .bind_blob(state.world.data(), state.world.size())
+        .bind(Json(state.last_frames).dump())
+        .step();
     execute("COMMIT;");
   } catch (...) {
     sqlite3_exec(database_, "ROLLBACK;", nullptr, nullptr, nullptr);
@@ -206,7 +260,9 @@ void Store::set_outcome(const std::string& outcome) {
 }
 
 RunInfo Store::info() const {
-  Statement row(database_, "SELECT title,procedure,version,files,instruments,started,simulated,outcome,sequence FROM run");
+  Statement row(
+      database_,
+      "SELECT title,procedure,version,files,instruments,started,simulated,outcome,sequence FROM run");
   if (!row.step()) throw UserError("bench store: it holds no run");
   RunInfo info;
   info.title = row.text();
@@ -233,8 +289,9 @@ ResumeState Store::resume_state() const {
 
 std::vector<StepRow> Store::steps() const {
   std::vector<StepRow> rows;
-  Statement row(database_, "SELECT idx,attempt,section,path,what,place,outcome,message,started,ended,value,limits"
-                           " FROM step ORDER BY sequence");
+  Statement row(database_,
+                "SELECT idx,attempt,section,path,what,place,outcome,message,started,ended,value,limits"
+                " FROM step ORDER BY sequence");
   while (row.step()) {
     StepRow& s = rows.emplace_back();
     s.index = static_cast<int>(row.integer());
@@ -247,8 +304,10 @@ std::vector<StepRow> Store::steps() const {
     s.message = row.text();
     s.started_utime = row.integer();
     s.ended_utime = row.integer();
-    if (!row.null()) s.value = row.real();
-    else row.skip();
+    if (!row.null())
+      s.value = row.real();
+    else
+      row.skip();
     s.limits = row.text();
   }
   return rows;
@@ -270,8 +329,9 @@ std::vector<TraceRow> Store::trace() const {
 
 std::vector<RecordingRow> Store::recordings(bool with_data) const {
   std::vector<RecordingRow> rows;
-  Statement row(database_, "SELECT idx,attempt,port,tags,start,ticks,clock,reference,frames,lost,broken,temperature,"
-                           "temperature_span,channels,data FROM recording ORDER BY idx,attempt,port");
+  Statement row(database_,
+                "SELECT idx,attempt,port,tags,start,ticks,clock,reference,frames,lost,broken,temperature,"
+                "temperature_span,channels,data FROM recording ORDER BY idx,attempt,port");
   while (row.step()) {
     RecordingRow& r = rows.emplace_back();
     r.index = static_cast<int>(row.integer());

@@ -49,7 +49,7 @@ void VirtualTime::sent(std::int64_t cable, std::int64_t bytes) {
 void VirtualTime::received(std::int64_t cable, std::int64_t bytes) {
   const std::lock_guard lock(mutex_);
   std::int64_t& left = on_cable_[cable];
-  const std::int64_t taken = std::min(left, bytes);   // those of a closed cable were counted off before
+  const std::int64_t taken = std::min(left, bytes);  // those of a closed cable were counted off before
   left -= taken;
   under_way_ -= taken;
 }
@@ -63,11 +63,11 @@ std::int64_t VirtualTime::serial_cable(std::string_view path) {
   std::int64_t number = 0;
   const std::string_view digits = path.substr(path.find_last_not_of("0123456789") + 1);
   std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  return 0x10000 + number;   // above every TCP port
+  return 0x10000 + number;  // above every TCP port
 }
 
 void VirtualTime::advance_to(std::int64_t utime) {
-  busy_ = true;   // before the laboratory knows: nobody may think it quiet in between
+  busy_ = true;  // before the laboratory knows: nobody may think it quiet in between
   now_ = utime;
   ring(wake_descriptor_);
 }

@@ -1,8 +1,9 @@
-// VirtualTime: the time of a bench and of the laboratory simulated beside it in the same program, over real transports.
+// VirtualTime: the time of a bench and of the laboratory simulated beside it in the same program, over real
+// transports.
 //
-// The bench alone moves it on, and only while the laboratory is quiet: it has done all there was to do by now, and no
-// byte is under way between the two. So every answer arrives at a definite virtual time, silence is known to be silence
-// at once, and a run gives the same result however fast or loaded the machine is.
+// The bench alone moves it on, and only while the laboratory is quiet: it has done all there was to do by
+// now, and no byte is under way between the two. So every answer arrives at a definite virtual time, silence
+// is known to be silence at once, and a run gives the same result however fast or loaded the machine is.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -24,22 +25,23 @@ class VirtualTime {
 
   std::int64_t now() const { return now_.load(); }
 
-  // Bytes that one side has sent and the other not yet received, by cable: a TCP connection is told by its client's
-  // port, a serial line by serial_cable(path). What is on a cable when either side lets go of it is lost.
+  // Bytes that one side has sent and the other not yet received, by cable: a TCP connection is told by its
+  // client's port, a serial line by serial_cable(path). What is on a cable when either side lets go of it is
+  // lost.
   void sent(std::int64_t cable, std::int64_t bytes);
   void received(std::int64_t cable, std::int64_t bytes);
   void closed(std::int64_t cable);
-  static std::int64_t serial_cable(std::string_view path);   // "/dev/pts/7"
+  static std::int64_t serial_cable(std::string_view path);  // "/dev/pts/7"
 
   // The bench's side.
   bool quiet() const { return !busy_.load() && under_way_.load() == 0; }
-  void advance_to(std::int64_t utime);          // only while quiet; the laboratory then catches up
-  std::int64_t next_event() const { return next_event_.load(); }   // when the laboratory will speak unasked
-  int idle_descriptor() const { return idle_descriptor_; }         // readable when the laboratory became idle
+  void advance_to(std::int64_t utime);  // only while quiet; the laboratory then catches up
+  std::int64_t next_event() const { return next_event_.load(); }  // when the laboratory will speak unasked
+  int idle_descriptor() const { return idle_descriptor_; }        // readable when the laboratory became idle
   void clear_idle();
 
   // The laboratory's side.
-  int wake_descriptor() const { return wake_descriptor_; }         // readable when time went on
+  int wake_descriptor() const { return wake_descriptor_; }  // readable when time went on
   void clear_wake();
   void busy() { busy_ = true; }
   void idle(std::int64_t next_event_utime);

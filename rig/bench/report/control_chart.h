@@ -7,8 +7,10 @@
 
 namespace waverig::rig::bench {
 
-// calibrations: of one unit, in the order of measurement. A panel a quantity and kind of channel; bars and bands are
-// k = 2, the wider band k = 3 (warning and action limits of a Shewhart chart), of a difference to the first.
-render::Figure control_chart(const std::vector<estimator::FrontEndCalibration>& calibrations, bool reference_common);
+// calibrations: of one unit, in the order of measurement. A panel a quantity and kind of channel; bars and
+// bands are k = 2, the wider band k = 3 (warning and action limits of a Shewhart chart), of a difference to
+// the first.
+render::Figure control_chart(const std::vector<estimator::FrontEndCalibration>& calibrations,
+                             bool reference_common);
 
 }  // namespace waverig::rig::bench

@@ -1,4 +1,5 @@
-// The figures of a bench run: temperature profile, procedure, results a channel; and what the live view shows.
+// The figures of a bench run: temperature profile, procedure, results a channel; and what the live view
+// shows.
 #pragma once
 #include <string>
 #include <utility>
@@ -11,13 +12,13 @@
 namespace waverig::rig::bench {
 
 // A window a panel, over the run so far.
-render::Figure windows_figure(const std::vector<LiveWindow>& windows, const Traces& traces, const std::string& title,
-                              const std::string& subtitle);
+render::Figure windows_figure(const std::vector<LiveWindow>& windows, const Traces& traces,
+                              const std::string& title, const std::string& subtitle);
 
 render::Figure temperature_figure(const Sequence& sequence, const Store& store, const Traces& traces);
 render::Figure procedure_figure(const Sequence& sequence, const Store& store);
 render::Figure scale_factor_figure(const Analysis& analysis);
-render::Figure closure_figure(const Analysis& analysis);      // what the fits leave over, level by level
+render::Figure closure_figure(const Analysis& analysis);  // what the fits leave over, level by level
 render::Figure bias_figure(const Analysis& analysis);
 render::Figure oscillator_figure(const Analysis& analysis);
 
@@ -26,6 +27,7 @@ struct BenchFigure {
   std::string stem, caption;
   render::Figure figure;
 };
-std::vector<BenchFigure> bench_figures(const Sequence& sequence, const Store& store, const Analysis* analysis);
+std::vector<BenchFigure> bench_figures(const Sequence& sequence, const Store& store,
+                                       const Analysis* analysis);
 
 }  // namespace waverig::rig::bench

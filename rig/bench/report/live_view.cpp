@@ -10,8 +10,10 @@ namespace waverig::rig::bench {
 namespace {
 
 constexpr const char* kPage =
-    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"5\"><title>waverig bench</title>"
-    "</head>\n<body style=\"margin:0\"><img src=\"live.png\" alt=\"The bench's graph windows\" style=\"max-width:100%\"></body></html>\n";
+    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
+    "content=\"5\"><title>waverig bench</title>"
+    "</head>\n<body style=\"margin:0\"><img src=\"live.png\" alt=\"The bench's graph windows\" "
+    "style=\"max-width:100%\"></body></html>\n";
 
 }  // namespace
 
@@ -19,7 +21,8 @@ LiveView::LiveView(const Sequence& sequence, std::filesystem::path out, std::chr
     : sequence_(sequence),
       out_(std::move(out)),
       refresh_(refresh),
-      traces_(sequence.laboratory.unit, sequence.laboratory.port(sequence.laboratory.unit.counts_port)->layout) {}
+      traces_(sequence.laboratory.unit,
+              sequence.laboratory.port(sequence.laboratory.unit.counts_port)->layout) {}
 
 void LiveView::take_over(const Store& store) {
   for (const TraceRow& row : store.trace()) traces_.add(row);
@@ -32,9 +35,10 @@ void LiveView::add(const TraceRow& row) {
 }
 
 void LiveView::show(const Progress& progress) {
-  status_ = fmt::format("Step {} of {}: {} {}; {} left{}", progress.step->index + 1, progress.steps, progress.step->path,
-                        describe_action(*progress.step), show_duration(progress.remaining_s),
-                        progress.alarm.empty() ? "" : "; alarm: " + progress.alarm);
+  status_ =
+      fmt::format("Step {} of {}: {} {}; {} left{}", progress.step->index + 1, progress.steps,
+                  progress.step->path, describe_action(*progress.step), show_duration(progress.remaining_s),
+                  progress.alarm.empty() ? "" : "; alarm: " + progress.alarm);
 }
 
 void LiveView::draw_if_due() {
@@ -47,7 +51,8 @@ void LiveView::draw_if_due() {
 void LiveView::draw() {
   changed_ = false;
   if (sequence_.windows.empty()) return;
-  const auto& png = render::png_bytes(windows_figure(sequence_.windows, traces_, sequence_.title, status_), canvas_, {});
+  const auto& png =
+      render::png_bytes(windows_figure(sequence_.windows, traces_, sequence_.title, status_), canvas_, {});
   evaluation::write_atomically(out_ / "live.png", {reinterpret_cast<const char*>(png.data()), png.size()});
   if (!std::filesystem::exists(out_ / "live.html")) evaluation::write_atomically(out_ / "live.html", kPage);
 }

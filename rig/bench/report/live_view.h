@@ -1,5 +1,5 @@
-// LiveView: the sequence's graph windows as a picture that is drawn anew while the bench runs (live.png, replaced whole,
-// and live.html that shows it and loads it again).
+// LiveView: the sequence's graph windows as a picture that is drawn anew while the bench runs (live.png,
+// replaced whole, and live.html that shows it and loads it again).
 #pragma once
 #include <chrono>
 #include <filesystem>
@@ -16,9 +16,9 @@ class LiveView {
   // refresh: of real time between two pictures.
   LiveView(const Sequence& sequence, std::filesystem::path out, std::chrono::milliseconds refresh);
 
-  void take_over(const Store& store);      // what a run that is gone on with has behind it
+  void take_over(const Store& store);  // what a run that is gone on with has behind it
   void add(const TraceRow& row);
-  void show(const Progress& progress);     // for the line below the title
+  void show(const Progress& progress);  // for the line below the title
   void draw();
 
  private:

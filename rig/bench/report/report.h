@@ -9,7 +9,8 @@
 namespace waverig::rig::bench {
 
 // Draws figures/STEM.png below out. Throws UserError where that cannot be written.
-void draw_figures(const std::vector<BenchFigure>& figures, const std::filesystem::path& out, const std::string& version);
+void draw_figures(const std::vector<BenchFigure>& figures, const std::filesystem::path& out,
+                  const std::string& version);
 
 // analysis: nullptr where the run did not come to its end. The pictures are taken from out/figures.
 std::string bench_report_html(const Sequence& sequence, const Store& store, const Analysis* analysis,

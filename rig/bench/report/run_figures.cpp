@@ -65,13 +65,16 @@ Panel window_panel(const LiveWindow& window, const Traces& traces) {
 std::map<int, StepRow> finished_steps(const Store& store) {
   std::map<int, StepRow> rows;
   for (StepRow& row : store.steps())
-    if (row.outcome == StepOutcome::kDone || row.outcome == StepOutcome::kAccepted) rows.insert_or_assign(row.index, std::move(row));
+    if (row.outcome == StepOutcome::kDone || row.outcome == StepOutcome::kAccepted)
+      rows.insert_or_assign(row.index, std::move(row));
   return rows;
 }
 
-std::string variable(const std::string& path, std::string_view name) {   // "temperature=5 degC/channel=…"
+std::string variable(const std::string& path, std::string_view name) {  // "temperature=5 degC/channel=…"
   const std::string key = std::string(name) + "=";
-  const std::size_t at = path.starts_with(key) ? 0 : path.find("/" + key) == std::string::npos ? std::string::npos : path.find("/" + key) + 1;
+  const std::size_t at = path.starts_with(key)                       ? 0
+                         : path.find("/" + key) == std::string::npos ? std::string::npos
+                                                                     : path.find("/" + key) + 1;
   if (at == std::string::npos) return "";
   const std::size_t from = at + key.size();
   return path.substr(from, path.find('/', from) - from);
@@ -81,7 +84,8 @@ std::string variable(const std::string& path, std::string_view name) {   // "tem
 std::string as_read(std::string text) {
   if (text.starts_with('-')) text.replace(0, 1, "\u2212");
   for (const auto& [ascii, read] : {std::pair{"degC", "°C"}, {" uA", " µA"}, {" uV", " µV"}})
-    if (const std::size_t at = text.find(ascii); at != std::string::npos) text.replace(at, std::strlen(ascii), read);
+    if (const std::size_t at = text.find(ascii); at != std::string::npos)
+      text.replace(at, std::strlen(ascii), read);
   return text;
 }
 
@@ -93,13 +97,17 @@ class Gantt {
     const double at = static_cast<double>(row - categories_.begin());
     if (row == categories_.end()) categories_.push_back(category);
     auto bars = std::ranges::find(bars_, series, &Bars::name);
-    if (bars == bars_.end()) bars = bars_.insert(bars_.end(), {.name = series, .width = 0.7, .horizontal = true});
+    if (bars == bars_.end())
+      bars = bars_.insert(bars_.end(), {.name = series, .width = 0.7, .horizontal = true});
     bars->at.push_back(at);
     bars->base.push_back(from);
     bars->value.push_back(to);
   }
   Panel panel(std::string title, Axis x) const {
-    Panel p{.title = std::move(title), .x = std::move(x), .y = {.categories = categories_}, .legend = render::Legend::kAbove};
+    Panel p{.title = std::move(title),
+            .x = std::move(x),
+            .y = {.categories = categories_},
+            .legend = render::Legend::kAbove};
     // The first category on top.
     std::ranges::reverse(p.y.categories);
     for (Bars bars : bars_) {
@@ -119,12 +127,15 @@ Panel whole_procedure(const Sequence& sequence, const std::map<int, StepRow>& st
     double from, to;
     std::string series;
   };
-  std::vector<std::pair<std::string, Block>> blocks;   // neighbouring recordings of one channel are one
+  std::vector<std::pair<std::string, Block>> blocks;  // neighbouring recordings of one channel are one
   for (const auto& [index, row] : steps) {
     const PlannedStep& step = sequence.plan[static_cast<std::size_t>(index)];
     if (step.verb != Verb::kRecord && step.verb != Verb::kUntil) continue;
-    const std::string channel = variable(row.path, "channel"), temperature = variable(row.path, "temperature");
-    const std::string category = step.verb == Verb::kUntil ? "settle" : !channel.empty() ? channel : row.path.substr(0, row.path.find('='));
+    const std::string channel = variable(row.path, "channel"),
+                      temperature = variable(row.path, "temperature");
+    const std::string category = step.verb == Verb::kUntil ? "settle"
+                                 : !channel.empty()        ? channel
+                                                           : row.path.substr(0, row.path.find('='));
     const double from = hours(row.started_utime, start), to = hours(row.ended_utime, start);
     const std::string series = as_read(temperature);
     if (!blocks.empty() && blocks.back().first == category && blocks.back().second.series == series)
@@ -153,18 +164,22 @@ std::optional<Panel> one_channel(const Sequence& sequence, const std::map<int, S
     }
     if (own != block) break;
     const bool records = sequence.plan[static_cast<std::size_t>(index)].verb == Verb::kRecord;
-    gantt.add(as_read(setting), records ? "recording" : "setting and settling", 60 * hours(row.started_utime, start),
-              60 * hours(row.ended_utime, start));
+    gantt.add(as_read(setting), records ? "recording" : "setting and settling",
+              60 * hours(row.started_utime, start), 60 * hours(row.ended_utime, start));
   }
   if (block.empty()) return std::nullopt;
-  return gantt.panel(fmt::format("(b) The settings of {}", channel), {.label = "Time since its first setting", .unit = "min", .padding = 0});
+  return gantt.panel(fmt::format("(b) The settings of {}", channel),
+                     {.label = "Time since its first setting", .unit = "min", .padding = 0});
 }
 
 }  // namespace
 
 Figure windows_figure(const std::vector<LiveWindow>& windows, const Traces& traces, const std::string& title,
                       const std::string& subtitle) {
-  Figure figure{.title = title, .subtitle = subtitle, .share_x = true, .height_mm = 30 + 50.0 * static_cast<double>(windows.size())};
+  Figure figure{.title = title,
+                .subtitle = subtitle,
+                .share_x = true,
+                .height_mm = 30 + 50.0 * static_cast<double>(windows.size())};
   for (const LiveWindow& window : windows) figure.panels.push_back(window_panel(window, traces));
   return figure;
 }
@@ -175,12 +190,14 @@ Figure temperature_figure(const Sequence& sequence, const Store& store, const Tr
   Panel panel{.x = {.label = "Time since the beginning", .unit = "h", .padding = 0},
               .y = {.label = "Temperature", .unit = "°C"},
               .legend = render::Legend::kAbove};
-  Line unit{.name = "unit", .look = {.color = 0}}, target{.name = "chamber, told", .look = {.color = render::kFaintInk, .dash = render::Dash::kDashed}};
+  Line unit{.name = "unit", .look = {.color = 0}},
+      target{.name = "chamber, told", .look = {.color = render::kFaintInk, .dash = render::Dash::kDashed}};
   for (std::size_t i = 0; i < traces.time_s().size(); ++i) {
     unit.x.push_back(traces.time_s()[i] / kHour_s - static_cast<double>(start) * kMicrosecond / kHour_s);
     unit.y.push_back(traces.temperature_degC()[i]);
   }
-  render::Points recorded{.name = "recordings", .look = {.color = 1, .marker = render::Marker::kCircle, .marker_pt = 2}};
+  render::Points recorded{.name = "recordings",
+                          .look = {.color = 1, .marker = render::Marker::kCircle, .marker_pt = 2}};
   for (const RecordingRow& row : store.recordings()) {
     if (row.port != sequence.laboratory.unit.counts_port) continue;
     recorded.x.push_back(hours(row.start_utime, start));

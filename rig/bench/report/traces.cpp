@@ -28,7 +28,8 @@ void Traces::add(const TraceRow& row) {
       const auto total = [&](const char* suffix) {
         return static_cast<double>(total_step(layout_, last_, row.raw, layout_.index_of(c.name + suffix)));
       };
-      current_A = (c.K_N0_C * total("_N") - c.K_P0_C * total("_P")) / (static_cast<double>(ticks) * unit_.tick_s);
+      current_A =
+          (c.K_N0_C * total("_N") - c.K_P0_C * total("_P")) / (static_cast<double>(ticks) * unit_.tick_s);
     }
     current_A_[c.name].push_back(current_A);
   }
@@ -36,7 +37,8 @@ void Traces::add(const TraceRow& row) {
 }
 
 Traces traces_of(const Sequence& sequence, const Store& store) {
-  Traces traces(sequence.laboratory.unit, sequence.laboratory.port(sequence.laboratory.unit.counts_port)->layout);
+  Traces traces(sequence.laboratory.unit,
+                sequence.laboratory.port(sequence.laboratory.unit.counts_port)->layout);
   for (const TraceRow& row : store.trace()) traces.add(row);
   return traces;
 }

@@ -13,7 +13,7 @@ class Traces {
  public:
   explicit Traces(const UnitDescription& unit, const FrameLayout& counts_layout);
 
-  void add(const TraceRow& row);           // in the order of time; rows of other ports are passed over
+  void add(const TraceRow& row);  // in the order of time; rows of other ports are passed over
 
   // Since 1970. A current is the mean since the frame before, by design's scale factors; NaN after a restart.
   const std::vector<double>& time_s() const { return time_s_; }

@@ -11,18 +11,18 @@ struct ChamberTruth {
   double rate_max_degC_s = 3.0 / 60;  // heater and compressor
   double ripple_degC = 0.03;          // the controller never rests
   double ripple_period_s = 400;
-  double idle_time_constant_s = 3600; // off: back to ambient
+  double idle_time_constant_s = 3600;  // off: back to ambient
 };
 
-struct ChamberControls {              // what it has been told
+struct ChamberControls {  // what it has been told
   bool on = false;
   double target_degC = 23;
-  double ramp_degC_s = 0;             // 0: as fast as it can
-  double hunting_degC = 0;            // a fault: the controller hunts about its set point by this much
+  double ramp_degC_s = 0;   // 0: as fast as it can
+  double hunting_degC = 0;  // a fault: the controller hunts about its set point by this much
 };
 
 struct ChamberState {
-  double setpoint_degC = 23;          // the ramp's present value
+  double setpoint_degC = 23;  // the ramp's present value
   double air_degC = 23;
   double rate_degC_s = 0;
   double time_s = 0;

@@ -9,7 +9,7 @@ namespace waverig::rig::bench {
 namespace {
 
 constexpr double kWanderTime_s = 1000;
-constexpr double kFullRate_Hz = kConverterClock_Hz;   // one pulse a clock at most
+constexpr double kFullRate_Hz = kConverterClock_Hz;  // one pulse a clock at most
 
 void tune(const UnitTruth& truth, UnitState& state) {
   state.master_error = cubic_at(truth.master_error, state.board_degC);
@@ -22,7 +22,8 @@ void tune(const UnitTruth& truth, UnitState& state) {
     c.bias_A = cubic_at(t.bias_A, state.die_degC) + c.wander_A;
     for (std::size_t k = 0; k < 2; ++k) {
       const Hysteresis& h = t.hysteresis[k];
-      c.play_degC[k] = std::clamp(c.play_degC[k], state.die_degC - h.width_degC, state.die_degC + h.width_degC);
+      c.play_degC[k] =
+          std::clamp(c.play_degC[k], state.die_degC - h.width_degC, state.die_degC + h.width_degC);
       c.bias_A += h.amplitude_A * (c.play_degC[k] - state.die_degC) / h.width_degC;
     }
   }
@@ -111,14 +112,15 @@ void count(const UnitTruth& truth, UnitState& state, const std::array<double, kC
                                       .bias_A = c.bias_A,
                                       .reset_clock_error = state.converter_clock_error,
                                       .largest_rate_Hz = kFullRate_Hz});
-    converter.integrate(c.remainder_C, 0);   // what the last interval left
+    converter.integrate(c.remainder_C, 0);  // what the last interval left
     converter.integrate(current_A[i] * dt_s + state.noise.gaussian(t.noise_A_sqrt_s * root_s), dt_s);
     const ConverterCounts counts = converter.take();
     c.N += static_cast<std::uint64_t>(counts.negative);
     c.P += static_cast<std::uint64_t>(counts.positive);
     c.remainder_C = converter.remainder_C();
   }
-  count_clock(kConverterClock_Hz * (1 + state.converter_clock_error), dt_s, state.clock_fraction, state.clock);
+  count_clock(kConverterClock_Hz * (1 + state.converter_clock_error), dt_s, state.clock_fraction,
+              state.clock);
   count_clock(reference_Hz, dt_s, state.reference_fraction, state.reference);
   state.ticks += static_cast<std::uint64_t>(ticks);
 }

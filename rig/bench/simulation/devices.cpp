@@ -34,11 +34,13 @@ void output_switch(ScpiDevice& device, const std::function<bool&()>& flag) {
 void make_calibrator(ScpiDevice& device, const Wiring& wiring) {
   const auto controls = [wiring]() -> CalibratorControls& { return wiring.controls().calibrator; };
   device.on_set("SOURce:CURRent:RANGe", [controls](const std::string& a) {
-    const double range_A = estimator::kCalibratorTable2[range_index(scpi_number(a, 0, kCompliance_A))].full_scale_A;
+    const double range_A =
+        estimator::kCalibratorTable2[range_index(scpi_number(a, 0, kCompliance_A))].full_scale_A;
     if (controls().level_A > range_A) throw ScpiError{-221, "Settings conflict;level above range"};
     controls().range_A = range_A;
   });
-  device.on_query("SOURce:CURRent:RANGe", [controls](const std::string&) { return scpi_text(controls().range_A); });
+  device.on_query("SOURce:CURRent:RANGe",
+                  [controls](const std::string&) { return scpi_text(controls().range_A); });
   device.on_set("SOURce:CURRent", [controls](const std::string& a) {
     controls().level_A = scpi_number(a, 0, controls().range_A);
   });
@@ -47,7 +49,8 @@ void make_calibrator(ScpiDevice& device, const Wiring& wiring) {
   device.on_reset([controls] { controls() = {}; });
 }
 
-// ROUTe:PATH OPEN, or a channel and a polarity: ROUTe:PATH GYRO_3,NEG. ROUTe:METer puts the DMM in the unit's place.
+// ROUTe:PATH OPEN, or a channel and a polarity: ROUTe:PATH GYRO_3,NEG. ROUTe:METer puts the DMM in the unit's
+// place.
 void make_switch(ScpiDevice& device, const Wiring& wiring) {
   const auto route = [wiring]() -> RouteControls& { return wiring.controls().route; };
   device.on_set("ROUTe:PATH", [route](const std::string& a) {
@@ -72,8 +75,10 @@ void make_switch(ScpiDevice& device, const Wiring& wiring) {
     for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     return name + (route().polarity > 0 ? ",POS" : ",NEG");
   });
-  device.on_set("ROUTe:METer", [wiring](const std::string& a) { wiring.controls().dmm_in_path = scpi_boolean(a); });
-  device.on_query("ROUTe:METer", [wiring](const std::string&) { return wiring.controls().dmm_in_path ? "1" : "0"; });
+  device.on_set("ROUTe:METer",
+                [wiring](const std::string& a) { wiring.controls().dmm_in_path = scpi_boolean(a); });
+  device.on_query("ROUTe:METer",
+                  [wiring](const std::string&) { return wiring.controls().dmm_in_path ? "1" : "0"; });
   device.on_reset([wiring, route] {
     route() = {};
     wiring.controls().dmm_in_path = false;
@@ -92,7 +97,9 @@ void make_dmm(ScpiDevice& device, const Wiring& wiring, bool wired) {
   };
   device.on_set("CONFigure:CURRent:DC", configure);
   device.on_set("CONFigure:CURRent", configure);
-  device.on_query("CONFigure", [range_A](const std::string&) { return fmt::format("\"CURR {:+.6E},+1.000000E-09\"", *range_A); });
+  device.on_query("CONFigure", [range_A](const std::string&) {
+    return fmt::format("\"CURR {:+.6E},+1.000000E-09\"", *range_A);
+  });
   device.on_query("SENSe:FUNCtion", [](const std::string&) { return "\"CURR\""; });
   device.on_query("FUNCtion", [](const std::string&) { return "\"CURR\""; });
   device.on_query("READ", read);
@@ -105,12 +112,14 @@ void make_dmm(ScpiDevice& device, const Wiring& wiring, bool wired) {
 
 void make_chamber(ScpiDevice& device, const Wiring& wiring, bool wired) {
   const auto controls = [wiring]() -> ChamberControls& { return wiring.controls().chamber; };
-  device.on_set("SOURce:TEMPerature", [controls](const std::string& a) { controls().target_degC = scpi_number(a, -40, 120); });
-  device.on_query("SOURce:TEMPerature", [controls](const std::string&) { return scpi_text(controls().target_degC); });
-  device.on_set("SOURce:TEMPerature:RAMP", [controls](const std::string& a) {
-    controls().ramp_degC_s = scpi_number(a, 0, 10) / 60;
-  });
-  device.on_query("SOURce:TEMPerature:RAMP", [controls](const std::string&) { return scpi_text(controls().ramp_degC_s * 60); });
+  device.on_set("SOURce:TEMPerature",
+                [controls](const std::string& a) { controls().target_degC = scpi_number(a, -40, 120); });
+  device.on_query("SOURce:TEMPerature",
+                  [controls](const std::string&) { return scpi_text(controls().target_degC); });
+  device.on_set("SOURce:TEMPerature:RAMP",
+                [controls](const std::string& a) { controls().ramp_degC_s = scpi_number(a, 0, 10) / 60; });
+  device.on_query("SOURce:TEMPerature:RAMP",
+                  [controls](const std::string&) { return scpi_text(controls().ramp_degC_s * 60); });
   device.on_query("MEASure:TEMPerature", [wiring, wired](const std::string&) {
     return scpi_text(wired ? wiring.world.chamber_reading_degC() : 23.0);
   });
@@ -120,8 +129,10 @@ void make_chamber(ScpiDevice& device, const Wiring& wiring, bool wired) {
 
 void make_generator(ScpiDevice& device, const Wiring& wiring) {
   const auto controls = [wiring]() -> GeneratorControls& { return wiring.controls().generator; };
-  device.on_set("SOURce:FREQuency", [controls](const std::string& a) { controls().frequency_Hz = scpi_number(a, 1, 20e6); });
-  device.on_query("SOURce:FREQuency", [controls](const std::string&) { return scpi_text(controls().frequency_Hz); });
+  device.on_set("SOURce:FREQuency",
+                [controls](const std::string& a) { controls().frequency_Hz = scpi_number(a, 1, 20e6); });
+  device.on_query("SOURce:FREQuency",
+                  [controls](const std::string&) { return scpi_text(controls().frequency_Hz); });
   output_switch(device, [controls]() -> bool& { return controls().on; });
   device.on_reset([controls] { controls() = {}; });
 }
@@ -132,7 +143,8 @@ void make_supply(ScpiDevice& device, const Wiring& wiring) {
   };
   const auto supply = std::make_shared<Supply>();
   const auto powered = [wiring]() -> bool& { return wiring.controls().unit_powered; };
-  device.on_set("SOURce:VOLTage", [supply](const std::string& a) { supply->voltage_V = scpi_number(a, 0, 40); });
+  device.on_set("SOURce:VOLTage",
+                [supply](const std::string& a) { supply->voltage_V = scpi_number(a, 0, 40); });
   device.on_query("SOURce:VOLTage", [supply](const std::string&) { return scpi_text(supply->voltage_V); });
   device.on_set("SOURce:CURRent", [supply](const std::string& a) { supply->limit_A = scpi_number(a, 0, 5); });
   device.on_query("SOURce:CURRent", [supply](const std::string&) { return scpi_text(supply->limit_A); });
@@ -149,12 +161,13 @@ void make_supply(ScpiDevice& device, const Wiring& wiring) {
 }  // namespace
 
 const std::vector<std::string>& device_kinds() {
-  static const std::vector<std::string> kinds = {"calibrator",         "switch_matrix", "dmm",
-                                                 "chamber", "function_generator", "power_supply"};
+  static const std::vector<std::string> kinds = {"calibrator", "switch_matrix",      "dmm",
+                                                 "chamber",    "function_generator", "power_supply"};
   return kinds;
 }
 
-std::unique_ptr<ScpiDevice> make_device(const std::string& kind, const std::string& name, World& world, bool wired) {
+std::unique_ptr<ScpiDevice> make_device(const std::string& kind, const std::string& name, World& world,
+                                        bool wired) {
   const Wiring wiring{world, wired ? nullptr : std::make_shared<Controls>()};
   const auto device = [&](const std::string& maker, const std::string& model) {
     return std::make_unique<ScpiDevice>(identity_of(maker, model, name));
@@ -167,7 +180,8 @@ std::unique_ptr<ScpiDevice> make_device(const std::string& kind, const std::stri
   if (kind == "function_generator") make_generator(*(made = device("WAVERIG", "GENERATOR-20M")), wiring);
   if (kind == "power_supply") make_supply(*(made = device("WAVERIG", "SUPPLY-40")), wiring);
   if (!made)
-    throw UserError(fmt::format("instrument {}: kind = \"{}\": expected one of {}", name, kind, fmt::join(device_kinds(), ", ")));
+    throw UserError(fmt::format("instrument {}: kind = \"{}\": expected one of {}", name, kind,
+                                fmt::join(device_kinds(), ", ")));
   return made;
 }
 

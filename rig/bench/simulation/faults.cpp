@@ -8,7 +8,8 @@
 namespace waverig::rig::bench {
 namespace {
 
-const std::vector<std::string> kTypes = {"hang", "slow", "disappear", "error", "wrong", "corrupt", "silent", "hunt"};
+const std::vector<std::string> kTypes = {"hang",  "slow",    "disappear", "error",
+                                         "wrong", "corrupt", "silent",    "hunt"};
 
 // "2025-03-01T08:00:00Z", or a day.
 std::int64_t utime_of(TomlTable& table, const char* key) {
@@ -21,7 +22,8 @@ std::int64_t utime_of(TomlTable& table, const char* key) {
 
 }  // namespace
 
-const Fault* active(const std::vector<Fault>& faults, std::string_view device, FaultType type, double time_s) {
+const Fault* active(const std::vector<Fault>& faults, std::string_view device, FaultType type,
+                    double time_s) {
   for (const Fault& f : faults)
     if (f.device == device && f.type == type && time_s >= f.from_s && time_s < f.to_s) return &f;
   return nullptr;
@@ -31,18 +33,22 @@ SimulationSettings load_simulation(const std::filesystem::path& file) {
   TomlFile document(file);
   TomlTable& root = document.root();
   SimulationSettings settings;
-  const auto seed = [](TomlTable& table, const char* key) { return static_cast<std::uint64_t>(table.integer(key, 1, {0, 9e15})); };
+  const auto seed = [](TomlTable& table, const char* key) {
+    return static_cast<std::uint64_t>(table.integer(key, 1, {0, 9e15}));
+  };
   settings.world.seed = seed(root, "seed");
   settings.world.noise_seed = seed(root, "noise_seed");
   if (root.has("start")) settings.start_utime = utime_of(root, "start");
   TomlTable drift = root.table("drift");
   const auto quantity = [&](const char* key, const char* fallback, const char* base) {
-    return parse_quantity(drift.text(key, fallback), base, drift.place_of(key) + ": " + drift.name_of(key)).si;
+    return parse_quantity(drift.text(key, fallback), base, drift.place_of(key) + ": " + drift.name_of(key))
+        .si;
   };
   settings.world.drift = {seed(drift, "seed"), quantity("scale", "0 ppm", "1"), quantity("bias", "0 A", "A")};
   for (TomlTable& table : root.tables("fault")) {
     const auto seconds = [&](std::string_view key, const char* fallback) {
-      return parse_quantity(table.text(key, fallback), "s", table.place_of(key) + ": " + table.name_of(key)).si;
+      return parse_quantity(table.text(key, fallback), "s", table.place_of(key) + ": " + table.name_of(key))
+          .si;
     };
     Fault fault;
     fault.device = table.text("device", {});

@@ -9,25 +9,25 @@
 namespace waverig::rig::bench {
 
 enum class FaultType {
-  kHang,         // takes commands, does not answer
-  kSlow,         // answers value seconds late
-  kDisappear,    // is not there: no connection, silence on the bus
-  kError,        // reports SCPI error -300 after each command
-  kWrong,        // its readings are value instead
-  kCorrupt,      // a port: part value of the frames has a broken bit
-  kSilent,       // a port: no frames
-  kHunt,         // the chamber never settles: it hunts by value degC
+  kHang,       // takes commands, does not answer
+  kSlow,       // answers value seconds late
+  kDisappear,  // is not there: no connection, silence on the bus
+  kError,      // reports SCPI error -300 after each command
+  kWrong,      // its readings are value instead
+  kCorrupt,    // a port: part value of the frames has a broken bit
+  kSilent,     // a port: no frames
+  kHunt,       // the chamber never settles: it hunts by value degC
 };
 
 struct Fault {
-  std::string device;               // instrument, gateway or port
+  std::string device;  // instrument, gateway or port
   FaultType type = FaultType::kHang;
-  double from_s = 0, to_s = 1e12;   // since the laboratory's start
+  double from_s = 0, to_s = 1e12;  // since the laboratory's start
   double value = 0;
 };
 
 struct SimulationSettings {
-  std::int64_t start_utime = 1'704'067'200'000'000;   // 2024-01-01: a simulated run does not look at the clock
+  std::int64_t start_utime = 1'704'067'200'000'000;  // 2024-01-01: a simulated run does not look at the clock
   WorldSettings world;
   std::vector<Fault> faults;
 };

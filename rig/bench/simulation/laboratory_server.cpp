@@ -20,11 +20,13 @@
 namespace waverig::rig::bench {
 namespace {
 
-constexpr int kFramesAtOnce = 300;               // made before the line is written to
-constexpr std::size_t kLineBacklog = 1 << 16;    // in real time an unread line loses what is beyond
+constexpr int kFramesAtOnce = 300;             // made before the line is written to
+constexpr std::size_t kLineBacklog = 1 << 16;  // in real time an unread line loses what is beyond
 constexpr std::size_t kInputMax = 1 << 20;
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what + ": " + std::strerror(errno)); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(what + ": " + std::strerror(errno));
+}
 
 sockaddr_in address_of(const std::string& host, int port) {
   sockaddr_in address{};
@@ -35,7 +37,9 @@ sockaddr_in address_of(const std::string& host, int port) {
 }
 
 std::int64_t steady_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace
@@ -44,15 +48,16 @@ Descriptor::~Descriptor() {
   if (number_ >= 0) ::close(number_);
 }
 
-LaboratoryServer::LaboratoryServer(const SimulationSettings& settings, const Laboratory& laboratory, VirtualTime* time,
-                                   std::int64_t start_utime)
+LaboratoryServer::LaboratoryServer(const SimulationSettings& settings, const Laboratory& laboratory,
+                                   VirtualTime* time, std::int64_t start_utime)
     : faults_(settings.faults),
       gateway_name_(laboratory.gateways.empty() ? "" : laboratory.gateways.front().name),
       counts_port_(laboratory.unit.counts_port),
       monitor_port_(laboratory.unit.monitor_port),
       time_(time),
       real_offset_us_(start_utime - steady_us()),
-      world_(settings.world, start_utime, laboratory.port(counts_port_)->layout, laboratory.port(monitor_port_)->layout),
+      world_(settings.world, start_utime, laboratory.port(counts_port_)->layout,
+             laboratory.port(monitor_port_)->layout),
       rack_(laboratory, world_, faults_) {
   listeners_.push_back(listen_on(Listener::Kind::kGateway, 0, "127.0.0.1", 0));
   for (std::size_t i = 0; i < rack_.size(); ++i)
@@ -62,14 +67,15 @@ LaboratoryServer::LaboratoryServer(const SimulationSettings& settings, const Lab
   lines_.push_back(open_line(monitor_port_));
 }
 
-LaboratoryServer::Listener LaboratoryServer::listen_on(Listener::Kind kind, std::size_t device, const std::string& host,
-                                                       int port) {
+LaboratoryServer::Listener LaboratoryServer::listen_on(Listener::Kind kind, std::size_t device,
+                                                       const std::string& host, int port) {
   Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
   ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   sockaddr_in address = address_of(host, port);
   socklen_t size = sizeof address;
-  if (!socket || ::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size) < 0 || ::listen(socket.get(), 16) < 0 ||
+  if (!socket || ::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size) < 0 ||
+      ::listen(socket.get(), 16) < 0 ||
       ::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size) < 0)
     fail(fmt::format("simulated laboratory: {}:{}", host, port));
   return {kind, device, std::move(socket), ntohs(address.sin_port)};
@@ -84,7 +90,7 @@ void LaboratoryServer::open_vxi11() {
     Descriptor udp(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     sockaddr_in address = address_of(host, 111);
     if (!udp || ::bind(udp.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) < 0) {
-      if (errno == EACCES) return;   // no right to the port: no VXI-11
+      if (errno == EACCES) return;  // no right to the port: no VXI-11
       continue;
     }
     try {
@@ -97,7 +103,7 @@ void LaboratoryServer::open_vxi11() {
       vxi11_host_ = host;
       return;
     } catch (const std::runtime_error&) {
-      continue;   // taken by somebody else: the next address
+      continue;  // taken by somebody else: the next address
     }
   }
 }
@@ -116,11 +122,13 @@ LaboratoryServer::SerialLine LaboratoryServer::open_line(const std::string& name
   termios mode{};
   ::tcgetattr(line.master.get(), &mode);
   ::cfmakeraw(&mode);
-  ::tcsetattr(line.master.get(), TCSANOW, &mode);   // nothing is echoed before the bench opens its side
+  ::tcsetattr(line.master.get(), TCSANOW, &mode);  // nothing is echoed before the bench opens its side
   return line;
 }
 
-std::int64_t LaboratoryServer::now() const { return time_ != nullptr ? time_->now() : steady_us() + real_offset_us_; }
+std::int64_t LaboratoryServer::now() const {
+  return time_ != nullptr ? time_->now() : steady_us() + real_offset_us_;
+}
 
 void LaboratoryServer::run(const std::atomic<bool>& stop, int stop_descriptor) {
   bool caught_up = true;
@@ -132,7 +140,8 @@ void LaboratoryServer::run(const std::atomic<bool>& stop, int stop_descriptor) {
     for (const Listener& l : listeners_) waiting.push_back({l.socket.get(), POLLIN, 0});
     for (const Connection& c : connections_) waiting.push_back({c.socket.get(), POLLIN, 0});
     for (const SerialLine& l : lines_)
-      waiting.push_back({l.master.get(), static_cast<short>(l.pending.empty() ? POLLIN : POLLIN | POLLOUT), 0});
+      waiting.push_back(
+          {l.master.get(), static_cast<short>(l.pending.empty() ? POLLIN : POLLIN | POLLOUT), 0});
     int timeout_ms = caught_up ? -1 : 50;
     if (time_ == nullptr) {
       const std::int64_t due_ms = (next_due() - now()) / 1000;
@@ -173,7 +182,8 @@ void LaboratoryServer::accept_from(const Listener& listener) {
   Connection c;
   sockaddr_in peer{};
   socklen_t size = sizeof peer;
-  c.socket = Descriptor(::accept4(listener.socket.get(), reinterpret_cast<sockaddr*>(&peer), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  c.socket = Descriptor(::accept4(listener.socket.get(), reinterpret_cast<sockaddr*>(&peer), &size,
+                                  SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!c.socket) return;
   const int on = 1;
   ::setsockopt(c.socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
@@ -190,7 +200,8 @@ void LaboratoryServer::answer_port_mapper() {
   std::array<char, 1024> call;
   sockaddr_in from{};
   socklen_t size = sizeof from;
-  const ssize_t got = ::recvfrom(port_mapper_udp_.get(), call.data(), call.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
+  const ssize_t got = ::recvfrom(port_mapper_udp_.get(), call.data(), call.size(), 0,
+                                 reinterpret_cast<sockaddr*>(&from), &size);
   if (got <= 0) return;
   const std::string reply = port_mapper_reply({call.data(), static_cast<std::size_t>(got)}, vxi11_port_);
   if (!reply.empty())
@@ -205,7 +216,8 @@ void LaboratoryServer::close(Connection& connection) {
 
 bool LaboratoryServer::cut(const Connection& c) const {
   const double time_s = world_.state().time_s;
-  if (c.kind == Listener::Kind::kGateway) return active(faults_, gateway_name_, FaultType::kDisappear, time_s) != nullptr;
+  if (c.kind == Listener::Kind::kGateway)
+    return active(faults_, gateway_name_, FaultType::kDisappear, time_s) != nullptr;
   return c.kind == Listener::Kind::kScpi && !rack_.present(c.device);
 }
 
@@ -264,7 +276,7 @@ void LaboratoryServer::send_due(Connection& c) {
     if (c.cable != 0) time_->sent(c.cable, static_cast<std::int64_t>(answer->text.size()));
     const ssize_t put = ::send(c.socket.get(), answer->text.data(), answer->text.size(), MSG_NOSIGNAL);
     const auto size = static_cast<ssize_t>(answer->text.size());
-    if (put != size) {   // answers are short: a client that does not take one is not listening
+    if (put != size) {  // answers are short: a client that does not take one is not listening
       close(c);
       return;
     }
@@ -278,7 +290,8 @@ void LaboratoryServer::take_commands(SerialLine& line) {
   if (got <= 0) return;
   if (time_ != nullptr) time_->received(line.cable, got);
   line.commands.append(bytes.data(), static_cast<std::size_t>(got));
-  for (std::size_t end; (end = line.commands.find('\n')) != std::string::npos; line.commands.erase(0, end + 1))
+  for (std::size_t end; (end = line.commands.find('\n')) != std::string::npos;
+       line.commands.erase(0, end + 1))
     unit_command(world_, std::string_view(line.commands).substr(0, end));
   if (line.commands.size() > kInputMax) line.commands.clear();
 }
@@ -316,7 +329,8 @@ bool LaboratoryServer::flush(SerialLine& line, std::vector<std::uint8_t>& bytes)
   }
   bytes.clear();
   while (line.written < line.pending.size()) {
-    const ssize_t put = ::write(line.master.get(), line.pending.data() + line.written, line.pending.size() - line.written);
+    const ssize_t put =
+        ::write(line.master.get(), line.pending.data() + line.written, line.pending.size() - line.written);
     if (put <= 0) return false;
     line.written += static_cast<std::size_t>(put);
   }

@@ -42,15 +42,15 @@ class LaboratoryServer {
 
   struct Listener {
     enum class Kind { kScpi, kGateway, kVxi11, kPortMapper } kind;
-    std::size_t device = 0;      // of a raw SCPI port
+    std::size_t device = 0;  // of a raw SCPI port
     Descriptor socket;
     int port = 0;
   };
   struct SerialLine {
-    std::string name, path;      // of the side that the bench opens
+    std::string name, path;  // of the side that the bench opens
     Descriptor master;
-    Descriptor held;             // its other side, held open: a pseudo-terminal without one reports a hang-up for ever
-    std::int64_t cable = 0;      // to VirtualTime
+    Descriptor held;  // its other side, held open: a pseudo-terminal without one reports a hang-up for ever
+    std::int64_t cable = 0;  // to VirtualTime
     std::string commands;
     std::vector<std::uint8_t> pending;
     std::size_t written = 0;
@@ -58,7 +58,7 @@ class LaboratoryServer {
 
   const std::vector<Listener>& listeners() const { return listeners_; }
   const std::vector<SerialLine>& lines() const { return lines_; }
-  const std::string& vxi11_host() const { return vxi11_host_; }   // empty: none
+  const std::string& vxi11_host() const { return vxi11_host_; }  // empty: none
   const Rack& rack() const { return rack_; }
 
   std::mutex& mutex() { return mutex_; }
@@ -70,10 +70,10 @@ class LaboratoryServer {
     std::size_t device = 0;
     Descriptor socket;
     std::string input;
-    std::vector<Answer> answers;           // each to be sent at its time
+    std::vector<Answer> answers;  // each to be sent at its time
     std::unique_ptr<PrologixSide> prologix;
     std::unique_ptr<Vxi11Side> vxi11;
-    std::int64_t cable = 0;                // to VirtualTime; 0: it does not count these bytes
+    std::int64_t cable = 0;  // to VirtualTime; 0: it does not count these bytes
     bool gone = false;
   };
 
@@ -92,7 +92,7 @@ class LaboratoryServer {
   bool cut(const Connection& connection) const;
   void take_commands(SerialLine& line);
   void apply_faults();
-  bool move_world();                       // true: it has caught up and nothing is left to write
+  bool move_world();  // true: it has caught up and nothing is left to write
   bool flush(SerialLine& line, std::vector<std::uint8_t>& bytes);
   std::int64_t next_due() const;
 
@@ -107,7 +107,7 @@ class LaboratoryServer {
   std::string vxi11_host_;
   int vxi11_port_ = 0;
   std::list<Connection> connections_;
-  std::vector<SerialLine> lines_;          // counts, monitor
+  std::vector<SerialLine> lines_;  // counts, monitor
   mutable std::mutex mutex_;
 };
 

@@ -1,5 +1,6 @@
-// PrologixSide: one connection to the simulated GPIB gateway, after the Prologix GPIB-ETHERNET manual: "++" commands for
-// the gateway, everything else for the addressed instrument; an absent instrument answers with silence.
+// PrologixSide: one connection to the simulated GPIB gateway, after the Prologix GPIB-ETHERNET manual: "++"
+// commands for the gateway, everything else for the addressed instrument; an absent instrument answers with
+// silence.
 #pragma once
 #include <map>
 #include <string>
@@ -23,10 +24,11 @@ class PrologixSide {
 
   Rack& rack_;
   std::string buffer_;
-  bool escape_ = false, line_escaped_ = false;   // an escaped character stands in the line: it is no "++" command
+  bool escape_ = false,
+       line_escaped_ = false;  // an escaped character stands in the line: it is no "++" command
   int address_ = 0, read_timeout_ms_ = 200;
   bool auto_ = true;
-  std::map<int, Answer> waiting_;                // answers that nobody has read yet, by address
+  std::map<int, Answer> waiting_;  // answers that nobody has read yet, by address
 };
 
 }  // namespace waverig::rig::bench

@@ -5,8 +5,9 @@
 
 namespace waverig::rig::bench {
 
-Rack::Rack(const Laboratory& laboratory, World& world, const std::vector<Fault>& faults) : world_(world), faults_(faults) {
-  std::set<std::string> wired;   // the first of each kind is; the others are spares
+Rack::Rack(const Laboratory& laboratory, World& world, const std::vector<Fault>& faults)
+    : world_(world), faults_(faults) {
+  std::set<std::string> wired;  // the first of each kind is; the others are spares
   int free_address = 30;
   for (const Instrument& instrument : laboratory.instruments) {
     if (instrument.kind == "unit") continue;
@@ -16,8 +17,9 @@ Rack::Rack(const Laboratory& laboratory, World& world, const std::vector<Fault>&
       std::from_chars(address.path.data(), address.path.data() + address.path.size(), gpib);
     else
       --free_address;
-    slots_.push_back({instrument.name, gpib,
-                      make_device(instrument.kind, instrument.name, world, wired.insert(instrument.kind).second)});
+    slots_.push_back(
+        {instrument.name, gpib,
+         make_device(instrument.kind, instrument.name, world, wired.insert(instrument.kind).second)});
   }
 }
 
@@ -57,7 +59,8 @@ std::optional<Answer> Rack::tell(std::size_t index, std::string_view line, std::
   if (fault(FaultType::kError) != nullptr && line.find("ERR") == std::string_view::npos)
     slot.device->push_error(-300, "Device-specific error");
   if (!text) return std::nullopt;
-  if (const Fault* wrong = fault(FaultType::kWrong); wrong != nullptr && (line.starts_with("MEAS") || line.starts_with("READ")))
+  if (const Fault* wrong = fault(FaultType::kWrong);
+      wrong != nullptr && (line.starts_with("MEAS") || line.starts_with("READ")))
     text = scpi_text(wrong->value);
   const Fault* slow = fault(FaultType::kSlow);
   return Answer{*text, now_utime + (slow != nullptr ? static_cast<std::int64_t>(slow->value * 1e6) : 0)};

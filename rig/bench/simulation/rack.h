@@ -27,7 +27,7 @@ class Rack {
   // Behind gpib0,ADDRESS or under its own name or instN, as a VXI-11 device.
   std::optional<std::size_t> vxi11(std::string_view device) const;
 
-  bool present(std::size_t index) const;                       // not disappeared
+  bool present(std::size_t index) const;  // not disappeared
   // Tells an instrument one line; its answer, if the line asked for one and it is well.
   std::optional<Answer> tell(std::size_t index, std::string_view line, std::int64_t now_utime);
 

@@ -13,7 +13,8 @@ constexpr std::size_t kQueueLength = 20;
 
 std::string upper(std::string_view text) {
   std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::ranges::transform(result, result.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return result;
 }
 
@@ -48,7 +49,9 @@ ScpiDevice::ScpiDevice(std::string identity) : identity_(std::move(identity)) {
   on_query("*ESR", [this](const std::string&) { return errors_.empty() ? "0" : "32"; });
   on_query("*TST", [](const std::string&) { return "0"; });
   on_set("*CLS", [this](const std::string&) { errors_.clear(); });
-  on_set("*RST", [this](const std::string&) { if (reset_) reset_(); });
+  on_set("*RST", [this](const std::string&) {
+    if (reset_) reset_();
+  });
   on_set("*OPC", [](const std::string&) {});
   on_set("SYSTem:REMote", [](const std::string&) {});
   on_set("SYSTem:LOCal", [](const std::string&) {});
@@ -110,7 +113,8 @@ std::optional<std::string> ScpiDevice::execute(std::string_view line) {
   for (const std::string& command : split(line, ';')) {
     const std::string_view text = trimmed(command);
     if (text.empty()) continue;
-    if (const std::optional<std::string> answer = one(text)) answers = answers ? *answers + ";" + *answer : *answer;
+    if (const std::optional<std::string> answer = one(text))
+      answers = answers ? *answers + ";" + *answer : *answer;
   }
   return answers;
 }
@@ -119,7 +123,8 @@ double scpi_number(const std::string& argument, double low, double high) {
   double value = 0;
   const char* begin = argument.data() + (argument.starts_with('+') ? 1 : 0);
   const auto [end, error] = std::from_chars(begin, argument.data() + argument.size(), value);
-  if (error != std::errc() || end != argument.data() + argument.size()) throw ScpiError{-104, "Data type error;" + argument};
+  if (error != std::errc() || end != argument.data() + argument.size())
+    throw ScpiError{-104, "Data type error;" + argument};
   if (!(value >= low && value <= high)) throw ScpiError{-222, "Data out of range;" + argument};
   return value;
 }

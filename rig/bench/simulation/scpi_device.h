@@ -1,5 +1,5 @@
-// ScpiDevice: the command side of a simulated instrument: headers in short or long form, several commands a line,
-// the error queue and the common commands.
+// ScpiDevice: the command side of a simulated instrument: headers in short or long form, several commands a
+// line, the error queue and the common commands.
 #pragma once
 #include <deque>
 #include <functional>
@@ -36,7 +36,7 @@ class ScpiDevice {
 
  private:
   struct Entry {
-    std::vector<std::string> nodes;   // as in the pattern
+    std::vector<std::string> nodes;  // as in the pattern
     Set set;
     Get get;
   };

@@ -11,7 +11,8 @@ namespace waverig::rig::bench {
 using Kind = LaboratoryServer::Listener::Kind;
 
 SimulatedLaboratory::SimulatedLaboratory(const SimulationSettings& settings, const Laboratory& laboratory,
-                                         VirtualTime* time, std::int64_t start_utime, const std::string& world)
+                                         VirtualTime* time, std::int64_t start_utime,
+                                         const std::string& world)
     : laboratory_(laboratory),
       server_(std::make_unique<LaboratoryServer>(settings, laboratory, time, start_utime)),
       stop_descriptor_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
@@ -33,14 +34,17 @@ bool SimulatedLaboratory::has_vxi11() const { return !server_->vxi11_host().empt
 std::vector<SimulatedLaboratory::Endpoint> SimulatedLaboratory::endpoints() const {
   std::vector<Endpoint> list;
   for (const auto& listener : server_->listeners()) {
-    if (listener.kind == Kind::kGateway) list.push_back({"gateway", fmt::format("tcp://127.0.0.1:{}", listener.port)});
+    if (listener.kind == Kind::kGateway)
+      list.push_back({"gateway", fmt::format("tcp://127.0.0.1:{}", listener.port)});
     if (listener.kind == Kind::kScpi)
-      list.push_back({server_->rack().name(listener.device), fmt::format("tcp://127.0.0.1:{}", listener.port)});
+      list.push_back(
+          {server_->rack().name(listener.device), fmt::format("tcp://127.0.0.1:{}", listener.port)});
   }
   if (has_vxi11())
     for (std::size_t i = 0; i < server_->rack().size(); ++i)
       list.push_back({server_->rack().name(i), fmt::format("vxi11://{}/inst{}", server_->vxi11_host(), i)});
-  for (const auto& line : server_->lines()) list.push_back({line.name, "serial://" + line.path + "?baud=921600"});
+  for (const auto& line : server_->lines())
+    list.push_back({line.name, "serial://" + line.path + "?baud=921600"});
   return list;
 }
 
@@ -55,7 +59,8 @@ Laboratory SimulatedLaboratory::addressed() const {
   for (Gateway& gateway : result.gateways) gateway.address = find("gateway", "tcp");
   for (Port& port : result.ports) port.address = find(port.name, "serial");
   for (Instrument& instrument : result.instruments) {
-    if (instrument.address.starts_with("vxi11")) instrument.address = find(instrument.name, has_vxi11() ? "vxi11" : "tcp");
+    if (instrument.address.starts_with("vxi11"))
+      instrument.address = find(instrument.name, has_vxi11() ? "vxi11" : "tcp");
     if (instrument.address.starts_with("tcp")) instrument.address = find(instrument.name, "tcp");
   }
   return result;

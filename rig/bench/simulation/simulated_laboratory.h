@@ -1,9 +1,11 @@
-// SimulatedLaboratory: the other side of every cable of a bench, on this machine: a raw SCPI port for each instrument,
-// VXI-11 with its port mapper, a GPIB gateway with all of them, and two pseudo-terminals with the unit's frames.
+// SimulatedLaboratory: the other side of every cable of a bench, on this machine: a raw SCPI port for each
+// instrument, VXI-11 with its port mapper, a GPIB gateway with all of them, and two pseudo-terminals with the
+// unit's frames.
 //
-// One thread serves everything. In virtual time it runs beside a bench in the same program and tells VirtualTime when it
-// is busy; in real time anybody may talk to it. All listening is on the loopback interface, on ports the system chooses;
-// the port mapper needs port 111 of an address of its own in 127/8, and where that cannot be had there is no VXI-11.
+// One thread serves everything. In virtual time it runs beside a bench in the same program and tells
+// VirtualTime when it is busy; in real time anybody may talk to it. All listening is on the loopback
+// interface, on ports the system chooses; the port mapper needs port 111 of an address of its own in 127/8,
+// and where that cannot be had there is no VXI-11.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -35,12 +37,12 @@ class SimulatedLaboratory {
   struct Endpoint {
     std::string instrument, address;
   };
-  std::vector<Endpoint> endpoints() const;   // every way to every instrument
+  std::vector<Endpoint> endpoints() const;  // every way to every instrument
 
   // The physical state, while the laboratory is idle.
   std::string snapshot() const;
   UnitTruth unit_truth() const;
-  double source_A() const;                   // what the calibrator puts out now
+  double source_A() const;  // what the calibrator puts out now
   double chamber_target_degC() const;
 
  private:

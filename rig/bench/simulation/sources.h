@@ -1,4 +1,5 @@
-// Calibrator, switch matrix, DMM and function generator as what they do to a current; their data sheets' errors drawn.
+// Calibrator, switch matrix, DMM and function generator as what they do to a current; their data sheets'
+// errors drawn.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,13 +9,13 @@
 
 namespace waverig::rig::bench {
 
-inline constexpr std::size_t kRanges = 5;   // of Kim, Table 2
+inline constexpr std::size_t kRanges = 5;  // of Kim, Table 2
 
 // Sources only: the current is positive, a switch reverses it. Data sheets state 95 %, drawn as k = 2.
 struct CalibratorTruth {
-  std::array<double, kRanges> gain{};      // relative error, by range
-  std::array<double, kRanges> bias_A{};    // range-dependent offset
-  double floor_drift = 0.05;               // of the floor: how much the offset moves with each new setting
+  std::array<double, kRanges> gain{};    // relative error, by range
+  std::array<double, kRanges> bias_A{};  // range-dependent offset
+  double floor_drift = 0.05;             // of the floor: how much the offset moves with each new setting
   double settling_s = 0.2;
 };
 CalibratorTruth draw_calibrator(std::uint64_t seed);
@@ -26,7 +27,7 @@ std::size_t range_index(double range_A);
 double calibrator_A(const CalibratorTruth& truth, double level_A, std::size_t range, double drift_A);
 
 struct SwitchTruth {
-  std::array<std::array<double, 2>, kChannels> leakage_A{};   // by channel and polarity, below 0.1 nA
+  std::array<std::array<double, 2>, kChannels> leakage_A{};  // by channel and polarity, below 0.1 nA
   double open_leakage_A = 0;
 };
 SwitchTruth draw_switch(std::uint64_t seed);
@@ -35,12 +36,12 @@ struct DmmTruth {
   std::array<double, kRanges> gain{};
   std::array<double, kRanges> offset_A{};
   double noise_relative = 0.5e-6, noise_A = 0.2e-9;
-  double offset_drift_A = 1e-9;            // how much the offset has moved at each new level
+  double offset_drift_A = 1e-9;  // how much the offset has moved at each new level
 };
 DmmTruth draw_dmm(std::uint64_t seed);
 
 struct GeneratorTruth {
-  double error = 0;   // relative; 3 ppm at 95 %
+  double error = 0;  // relative; 3 ppm at 95 %
 };
 GeneratorTruth draw_generator(std::uint64_t seed);
 

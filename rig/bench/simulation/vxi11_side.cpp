@@ -6,7 +6,8 @@ namespace waverig::rig::bench {
 namespace {
 
 constexpr std::size_t kRecordMax = 1 << 20;
-constexpr std::uint32_t kCreateLink = 10, kDeviceWrite = 11, kDeviceRead = 12, kReadStatus = 13, kClear = 15, kDestroyLink = 23;
+constexpr std::uint32_t kCreateLink = 10, kDeviceWrite = 11, kDeviceRead = 12, kReadStatus = 13, kClear = 15,
+                        kDestroyLink = 23;
 constexpr std::uint32_t kNoError = 0, kNotAccessible = 3, kInvalidLink = 4, kNotSupported = 8, kTimeout = 15;
 constexpr std::uint32_t kEndBit = 4, kRequestCountBit = 1, kEndFlag = 8;
 
@@ -20,7 +21,8 @@ class XdrReader {
       return 0;
     }
     std::uint32_t value = 0;
-    for (int i = 0; i < 4; ++i) value = (value << 8) | static_cast<std::uint8_t>(bytes_[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 4; ++i)
+      value = (value << 8) | static_cast<std::uint8_t>(bytes_[static_cast<std::size_t>(i)]);
     bytes_.remove_prefix(4);
     return value;
   }
@@ -73,9 +75,9 @@ bool read_call(XdrReader& in, Call& call) {
 std::string reply_head(const Call& call, std::uint32_t status) {
   std::string out;
   put(out, call.id);
-  put(out, 1);        // a reply
-  put(out, 0);        // accepted
-  put(out, 0);        // no verifier
+  put(out, 1);  // a reply
+  put(out, 0);  // accepted
+  put(out, 0);  // no verifier
   put(out, 0);
   put(out, status);
   if (status == 2) {  // the versions that there are
@@ -100,7 +102,7 @@ std::string port_mapper_reply(std::string_view bytes, int vxi11_port) {
   if (call.program != kPortMapperProgram) return reply_head(call, 1);
   if (call.version != 2) return reply_head(call, 2);
   std::string out = reply_head(call, call.procedure == 0 || call.procedure == 3 ? 0 : 3);
-  if (call.procedure == 3) {   // GETPORT: program, version, protocol (6: TCP), 0
+  if (call.procedure == 3) {  // GETPORT: program, version, protocol (6: TCP), 0
     const std::uint32_t program = in.word();
     in.word();
     const std::uint32_t protocol = in.word();
@@ -138,9 +140,9 @@ Answer Vxi11Side::reply(std::string_view bytes, std::int64_t now_utime) {
   if (call.procedure == 0) return {out, now_utime};
 
   if (call.procedure == kCreateLink) {
-    in.word();   // client's id
-    in.word();   // lock
-    in.word();   // lock time-out
+    in.word();  // client's id
+    in.word();  // lock
+    in.word();  // lock time-out
     const auto index = rack_.vxi11(in.opaque());
     const bool there = in.good() && index && rack_.present(*index);
     if (there) links_[next_link_].device = *index;
@@ -159,8 +161,8 @@ Answer Vxi11Side::reply(std::string_view bytes, std::int64_t now_utime) {
     return {out, now_utime};
   }
   if (call.procedure == kDeviceWrite) {
-    in.word();   // I/O time-out
-    in.word();   // lock time-out
+    in.word();  // I/O time-out
+    in.word();  // lock time-out
     const std::uint32_t flags = in.word();
     const std::string data = in.opaque();
     if (!known || !in.good()) {
@@ -172,7 +174,8 @@ Answer Vxi11Side::reply(std::string_view bytes, std::int64_t now_utime) {
     l.input += data;
     if ((flags & kEndFlag) != 0 || data.ends_with('\n')) {
       while (!l.input.empty() && (l.input.back() == '\n' || l.input.back() == '\r')) l.input.pop_back();
-      if (std::optional<Answer> answer = rack_.tell(l.device, l.input, now_utime)) l.answers.push_back(std::move(*answer));
+      if (std::optional<Answer> answer = rack_.tell(l.device, l.input, now_utime))
+        l.answers.push_back(std::move(*answer));
       l.input.clear();
     }
     put(out, kNoError);
@@ -182,7 +185,8 @@ Answer Vxi11Side::reply(std::string_view bytes, std::int64_t now_utime) {
   if (call.procedure == kDeviceRead) {
     const std::uint32_t request_size = in.word();
     const std::int64_t deadline = now_utime + std::int64_t{1000} * in.word();
-    const auto answer_with = [&](std::uint32_t error, std::uint32_t reason, const std::string& data, std::int64_t due) {
+    const auto answer_with = [&](std::uint32_t error, std::uint32_t reason, const std::string& data,
+                                 std::int64_t due) {
       put(out, error);
       put(out, reason);
       put_opaque(out, data);
@@ -191,7 +195,8 @@ Answer Vxi11Side::reply(std::string_view bytes, std::int64_t now_utime) {
     };
     if (!known) return answer_with(kInvalidLink, 0, "", now_utime);
     std::vector<Answer>& answers = link->second.answers;
-    if (answers.empty() || answers.front().due_utime > deadline) return answer_with(kTimeout, 0, "", deadline);
+    if (answers.empty() || answers.front().due_utime > deadline)
+      return answer_with(kTimeout, 0, "", deadline);
     Answer& first = answers.front();
     if (!first.text.ends_with('\n')) first.text += '\n';
     const std::int64_t due = std::max(now_utime, first.due_utime);

@@ -1,4 +1,5 @@
-// Vxi11Side and port mapper: just enough of ONC RPC (RFC 5531, RFC 1833) and VXI-11 for liblxi and other clients.
+// Vxi11Side and port mapper: just enough of ONC RPC (RFC 5531, RFC 1833) and VXI-11 for liblxi and other
+// clients.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -27,8 +28,8 @@ class Vxi11Side {
  private:
   struct Link {
     std::size_t device = 0;
-    std::string input;                       // a command still without its end
-    std::vector<Answer> answers;             // not yet read
+    std::string input;            // a command still without its end
+    std::vector<Answer> answers;  // not yet read
   };
   Answer reply(std::string_view call, std::int64_t now_utime);
 

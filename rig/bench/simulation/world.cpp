@@ -10,8 +10,8 @@
 namespace waverig::rig::bench {
 namespace {
 
-constexpr int kSlowStep = 10;       // ticks: while the unit does not stream
-constexpr int kThermalStep = 100;   // ticks: thermal models move by the second
+constexpr int kSlowStep = 10;      // ticks: while the unit does not stream
+constexpr int kThermalStep = 100;  // ticks: thermal models move by the second
 constexpr char kMagic[] = "waverig bench world 1";
 
 UnitTruth drawn_and_drifted(const WorldSettings& settings) {
@@ -19,8 +19,12 @@ UnitTruth drawn_and_drifted(const WorldSettings& settings) {
   for (std::size_t i = 0; i < settings.converter.size(); ++i) {
     const ConverterChannelSettings& given = settings.converter[i];
     ChannelTruth& channel = unit.channels.at(kGyroChannels + i);
-    channel = {.K_N0_C = given.negative_quantum_C, .K_P0_C = given.positive_quantum_C, .dsf_N = {given.negative_scale_error},
-               .dsf_P = {given.positive_scale_error}, .bias_A = {given.bias_A}, .noise_A_sqrt_s = channel.noise_A_sqrt_s};
+    channel = {.K_N0_C = given.negative_quantum_C,
+               .K_P0_C = given.positive_quantum_C,
+               .dsf_N = {given.negative_scale_error},
+               .dsf_P = {given.positive_scale_error},
+               .bias_A = {given.bias_A},
+               .noise_A_sqrt_s = channel.noise_A_sqrt_s};
     unit.converter_clock_error = {given.reset_clock_error};
     unit.master_error = {settings.master_clock_error};
   }
@@ -55,7 +59,8 @@ World::World(const WorldSettings& settings, std::int64_t start_utime, const Fram
       counts_raw_(expect_fields(counts, 2 * kChannels + 5)),
       monitor_raw_(expect_fields(monitor, 5)) {
   state_.start_utime = start_utime;
-  state_.unit = settled_unit(unit_, settings.chamber.ambient_degC, derived_seed(settings.noise_seed, "bench noise"));
+  state_.unit =
+      settled_unit(unit_, settings.chamber.ambient_degC, derived_seed(settings.noise_seed, "bench noise"));
   state_.chamber.air_degC = state_.chamber.setpoint_degC = settings.chamber.ambient_degC;
   state_.line = RandomStream(settings.noise_seed, "serial line");
   controls.chamber.target_degC = settings.chamber.ambient_degC;
@@ -76,7 +81,8 @@ bool World::advance_to(std::int64_t utime, int frames_max) {
     if (state_.time_s + true_s(state_.unit, ticks) > target_s) return true;
     step(ticks);
     const auto due = [&](int period) {
-      return controls.unit_powered && period > 0 && state_.unit.ticks % static_cast<std::uint64_t>(period) == 0;
+      return controls.unit_powered && period > 0 &&
+             state_.unit.ticks % static_cast<std::uint64_t>(period) == 0;
     };
     if (due(controls.unit.counts_period_ticks)) {
       emit_counts();
@@ -117,7 +123,8 @@ void World::step(int ticks) {
     current_A[channel] = controls.route.polarity * state_.source_A +
                          switch_.leakage_A[channel][controls.route.polarity > 0 ? 1 : 0];
   }
-  const double reference_Hz = controls.generator.on ? controls.generator.frequency_Hz * (1 + generator_.error) : 0;
+  const double reference_Hz =
+      controls.generator.on ? controls.generator.frequency_Hz * (1 + generator_.error) : 0;
   count(unit_, state_.unit, current_A, reference_Hz, ticks);
   state_.time_s += dt_s;
   if (state_.unit.ticks % kThermalStep == 0) {
@@ -145,8 +152,9 @@ void World::emit_counts() {
 
 void World::emit_monitor() {
   const UnitState& u = state_.unit;
-  monitor_raw_ = {state_.monitor_frames++, static_cast<std::int64_t>(u.ticks), static_cast<std::int64_t>(u.reference),
-                  static_cast<std::int64_t>(u.clock), std::lround(thermometer_degC(unit_, u) * 1000)};
+  monitor_raw_ = {state_.monitor_frames++, static_cast<std::int64_t>(u.ticks),
+                  static_cast<std::int64_t>(u.reference), static_cast<std::int64_t>(u.clock),
+                  std::lround(thermometer_degC(unit_, u) * 1000)};
   const std::size_t from = monitor_line.size();
   monitor_encoder_.append(monitor_raw_, monitor_line);
   corrupt(monitor_line, from);
@@ -154,12 +162,14 @@ void World::emit_monitor() {
 
 void World::corrupt(std::vector<std::uint8_t>& line, std::size_t from) {
   if (controls.frame_corruption <= 0 || state_.line.uniform() >= controls.frame_corruption) return;
-  const auto bit = static_cast<std::size_t>(state_.line.uniform() * 8 * static_cast<double>(line.size() - from));
+  const auto bit =
+      static_cast<std::size_t>(state_.line.uniform() * 8 * static_cast<double>(line.size() - from));
   line[from + bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
 }
 
 double World::chamber_reading_degC() const {
-  RandomStream random(derived_seed(settings_.noise_seed, "chamber thermometer", state_.unit.ticks), "reading");
+  RandomStream random(derived_seed(settings_.noise_seed, "chamber thermometer", state_.unit.ticks),
+                      "reading");
   return state_.chamber.air_degC + random.gaussian(0.01);
 }
 
@@ -168,8 +178,8 @@ double World::dmm_reading_A(double range_A) const {
   RandomStream random(derived_seed(settings_.noise_seed, "dmm", state_.unit.ticks), "reading");
   RandomStream drift(derived_seed(settings_.noise_seed, "dmm offset", state_.settings), "drift");
   const double input_A = controls.dmm_in_path ? controls.route.polarity * state_.source_A : 0;
-  return input_A * (1 + dmm_.gain[range]) + dmm_.offset_A[range] +
-         drift.gaussian(dmm_.offset_drift_A) + random.gaussian(std::hypot(dmm_.noise_relative * input_A, dmm_.noise_A));
+  return input_A * (1 + dmm_.gain[range]) + dmm_.offset_A[range] + drift.gaussian(dmm_.offset_drift_A) +
+         random.gaussian(std::hypot(dmm_.noise_relative * input_A, dmm_.noise_A));
 }
 
 std::string World::snapshot() const {
@@ -180,8 +190,10 @@ std::string World::snapshot() const {
 }
 
 void World::restore(std::string_view snapshot) {
-  if (snapshot.size() != sizeof kMagic + sizeof state_ || std::memcmp(snapshot.data(), kMagic, sizeof kMagic) != 0)
-    throw UserError("the stored state of the simulated laboratory is of another program version: begin a new run");
+  if (snapshot.size() != sizeof kMagic + sizeof state_ ||
+      std::memcmp(snapshot.data(), kMagic, sizeof kMagic) != 0)
+    throw UserError(
+        "the stored state of the simulated laboratory is of another program version: begin a new run");
   std::memcpy(&state_, snapshot.data() + sizeof kMagic, sizeof state_);
 }
 
