@@ -52,12 +52,14 @@ void take_file(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode)
-    : directory_(directory), working_(partial_of(directory)), mode_(mode) {
+ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode, bool resumes)
+    : directory_(directory), working_(partial_of(directory)) {
   if (fs::exists(directory_) && !fs::is_directory(directory_))
     throw UserError(fmt::format("--out {}: is a file; expected a directory", directory_.string()));
   const bool finished = fs::exists(directory_) && !fs::is_empty(directory_);
-  if (finished && mode != Mode::kReplace)
+  const bool begun = fs::exists(working_);
+  if (begun) lock();
+  if (finished && mode != Mode::kReplace && !(begun && mode == Mode::kResume))
     throw UserError(
         fmt::format("--out {}: is there already; expected a new directory, or --replace to do it anew",
                     directory_.string()));
@@ -65,17 +67,27 @@ ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode)
     throw UserError(fmt::format(
         "--out {}: holds no results that --replace could replace; expected a results directory or a new one",
         directory_.string()));
-  if (mode == Mode::kFresh && fs::exists(working_))
+  if (mode == Mode::kFresh && begun)
     throw UserError(fmt::format("--out {}: {} is unfinished; expected {}--replace to do it anew",
                                 directory_.string(), working_.string(),
-                                // Only what a campaign has claimed can be gone on with.
-                                fs::exists(working_ / kSettingsFile) ? "--resume to go on or " : ""));
-  if (mode == Mode::kReplace) fs::remove_all(working_);
+                                resumes ? "--resume to go on or " : ""));
+  if (mode == Mode::kReplace) {
+    fs::remove_all(working_);
+    lock_.reset();  // of what is gone
+  }
   std::error_code error;
   fs::create_directories(runs(), error);
   if (error)
     throw UserError(fmt::format("--out {}: cannot be made: {}; expected a writable place",
                                 directory_.string(), error.message()));
+  if (!lock_) lock();
+}
+
+void ResultsDirectory::lock() {
+  lock_ = DirectoryLock::take(working_);
+  if (!lock_)
+    throw UserError(fmt::format("--out {}: another waverig is at work in {}; expected another directory",
+                                directory_.string(), working_.string()));
 }
 
 void ResultsDirectory::claim(const std::string& resolved_settings, const std::string& version) {

@@ -3,7 +3,10 @@
 // only by a finished one.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
+
+#include "rig/campaign/directory_lock.h"
 
 namespace waverig::rig {
 
@@ -11,11 +14,12 @@ class ResultsDirectory {
  public:
   enum class Mode { kFresh, kResume, kReplace };
 
-  // kFresh refuses where DIR exists or a DIR.partial waits to be resumed; kResume goes on in DIR.partial (or
-  // begins it); kReplace begins anew and lets an existing DIR stand until finish(), but takes the place of
-  // results alone: a file, or a folder of anything else, is nobody's to remove. Throws UserError naming
-  // --out.
-  ResultsDirectory(const std::filesystem::path& directory, Mode mode);
+  // kFresh refuses where DIR exists or a DIR.partial waits; kResume goes on in DIR.partial (or begins it),
+  // beside an earlier DIR too where kReplace was interrupted; kReplace begins anew. An existing DIR stands
+  // until finish(), and is replaced where it holds results alone: a file, or a folder of anything else, is
+  // nobody's to remove. `resumes`: the command knows --resume. Throws UserError naming --out, also where
+  // another process is at work in DIR.partial.
+  ResultsDirectory(const std::filesystem::path& directory, Mode mode, bool resumes = true);
 
   const std::filesystem::path& working() const { return working_; }
   std::filesystem::path runs() const { return working_ / "runs"; }
@@ -28,8 +32,10 @@ class ResultsDirectory {
   void finish();
 
  private:
+  void lock();
+
   std::filesystem::path directory_, working_;
-  Mode mode_;
+  std::optional<DirectoryLock> lock_;  // of working_
 };
 
 // A campaign judged into another directory: settings, calibrations and logs come with it, so that figures,

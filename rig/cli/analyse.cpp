@@ -62,8 +62,9 @@ std::string border_csv(const std::vector<BorderPoint>& border) {
 int analyse_compass(const CompassArguments& arguments) {
   const std::string command =
       fmt::format("waverig analyse compass --runs {} --seed {}", arguments.study.runs, arguments.study.seed);
-  rig::ResultsDirectory directory(arguments.out, arguments.replace ? rig::ResultsDirectory::Mode::kReplace
-                                                                   : rig::ResultsDirectory::Mode::kFresh);
+  using Mode = rig::ResultsDirectory::Mode;
+  rig::ResultsDirectory directory(arguments.out, arguments.replace ? Mode::kReplace : Mode::kFresh,
+                                  /*resumes=*/false);
   const estimator::TiltStudy study = estimator::run_tilt_study(arguments.study);
   const std::vector<BorderPoint> border = border_of(arguments.study);
 

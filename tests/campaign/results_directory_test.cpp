@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "lcmtypes/error.h"
 #include "tests/campaign/temporary_directory.h"
 
@@ -83,10 +85,55 @@ TEST(ResultsDirectory, ResumesOnlyWhatItsOwnVersionBegan) {
   EXPECT_NO_THROW(again.claim("seed = 1\n", "1.0"));
 }
 
+std::string refusal(const fs::path& directory, Mode mode, bool resumes = true) {
+  try {
+    ResultsDirectory(directory, mode, resumes);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(ResultsDirectory, NamesWhatTheCommandCanDoAboutAnUnfinishedOne) {
+  const TemporaryDirectory temporary;
+  { ResultsDirectory killed_at_once(temporary / "out", Mode::kFresh); }
+  EXPECT_NE(refusal(temporary / "out", Mode::kFresh).find("expected --resume to go on or --replace"),
+            std::string::npos);
+  temporary.write("out.partial/campaign.toml", "");
+  EXPECT_NE(refusal(temporary / "out", Mode::kFresh, false).find("is unfinished; expected --replace"),
+            std::string::npos);
+}
+
+TEST(ResultsDirectory, BelongsToOneProcessAtATime) {
+  const TemporaryDirectory temporary;
+  std::optional<ResultsDirectory> at_work(std::in_place, temporary / "out", Mode::kFresh);
+  at_work->claim("seed = 1\n", "1.0");
+  for (const Mode mode : {Mode::kFresh, Mode::kResume, Mode::kReplace}) {
+    const std::string sentence = refusal(temporary / "out", mode);
+    EXPECT_NE(sentence.find("another waverig is at work in"), std::string::npos) << sentence;
+  }
+  EXPECT_TRUE(fs::exists(temporary / "out.partial/campaign.toml"));
+  at_work.reset();
+  EXPECT_EQ(refusal(temporary / "out", Mode::kResume), "not refused");
+}
+
+TEST(ResultsDirectory, GoesOnWhereReplacingWasInterruptedAndKeepsTheOldUntilThen) {
+  const TemporaryDirectory temporary;
+  fs::create_directories(temporary / "out");
+  temporary.write("out/results.json", "old");
+  { ResultsDirectory(temporary / "out", Mode::kReplace).claim("seed = 1\n", "1.0"); }
+  ResultsDirectory again(temporary / "out", Mode::kResume);
+  again.claim("seed = 1\n", "1.0");
+  std::ofstream(again.working() / "results.json") << "new";
+  EXPECT_EQ(bytes_of(temporary / "out/results.json"), "old");
+  again.finish();
+  EXPECT_EQ(bytes_of(temporary / "out/results.json"), "new");
+}
+
 TEST(ResultsDirectory, DoesNotResumeWhatDoesNotSayItsVersion) {
   const TemporaryDirectory temporary;
-  ResultsDirectory before(temporary / "out", Mode::kFresh);
-  std::ofstream(before.working() / "campaign.toml") << "seed = 1\n";
+  { ResultsDirectory before(temporary / "out", Mode::kFresh); }
+  temporary.write("out.partial/campaign.toml", "seed = 1\n");
   EXPECT_THROW(ResultsDirectory(temporary / "out", Mode::kResume).claim("seed = 1\n", "1.0"), UserError);
 }
 
