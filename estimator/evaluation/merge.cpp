@@ -54,7 +54,7 @@ UserError settings_differ(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-CampaignResults merged(std::span<const fs::path> shards) {
+CampaignResults merged(std::span<const fs::path> shards, std::span<const std::string> expected_runs) {
   if (shards.empty()) throw UserError("merge: no shards; expected at least one results directory");
   CampaignResults all;
   std::map<std::pair<std::string, std::string>, const fs::path*> holder;  // by run and method
@@ -89,20 +89,16 @@ CampaignResults merged(std::span<const fs::path> shards) {
     return std::tie(a.period_s, a.height_m, a.repeat, a.run, a.method) <
            std::tie(b.period_s, b.height_m, b.repeat, b.run, b.method);
   });
+  for (const std::string& run : expected_runs)
+    if (std::none_of(all.runs.begin(), all.runs.end(), [&](const RunResult& r) { return r.run == run; }))
+      throw UserError(
+          fmt::format("{} and {} more: no shard holds run '{}'; expected all shards of the campaign",
+                      shards.front().string(), shards.size() - 1, run));
   all.cells = cells_of(all.runs);
   return all;
 }
 
-CampaignResults merge_into(const fs::path& out, std::span<const fs::path> shards, const std::string& command,
-                           std::span<const std::string> expected_runs) {
-  CampaignResults results = merged(shards);
-  for (const std::string& run : expected_runs)
-    if (std::none_of(results.runs.begin(), results.runs.end(),
-                     [&](const RunResult& r) { return r.run == run; }))
-      throw UserError(
-          fmt::format("{} and {} more: no shard holds run '{}'; expected all shards of the campaign",
-                      shards.front().string(), shards.size() - 1, run));
-  results.command = command;
+void merge_into(const fs::path& out, std::span<const fs::path> shards, const CampaignResults& results) {
   std::error_code error;
   if (fs::exists(out) && !fs::is_empty(out, error))
     throw UserError(fmt::format("--out {}: is not empty; expected a new or empty directory", out.string()));
@@ -118,7 +114,6 @@ CampaignResults merge_into(const fs::path& out, std::span<const fs::path> shards
       if (log.is_regular_file()) fs::copy_file(log.path(), out / "runs" / log.path().filename());
   }
   write_results(out, results);
-  return results;
 }
 
 }  // namespace waverig::evaluation

@@ -11,13 +11,13 @@ namespace waverig::evaluation {
 
 // The results of all shards, cells pooled anew. Throws UserError, naming both directories, where a shard is
 // not finished, was run with other settings (campaign.toml), another seed or version, or holds a run that
-// another has too.
-CampaignResults merged(std::span<const std::filesystem::path> shards);
+// another has too; and where one of expected_runs, the runs of the whole campaign, is in no shard.
+CampaignResults merged(std::span<const std::filesystem::path> shards,
+                       std::span<const std::string> expected_runs);
 
-// Writes the merged results into `out`, which must not exist yet or be empty: settings, calibration and every
-// run's log are copied, results.csv and results.json written last. Throws UserError where one of
-// expected_runs, the runs of the whole campaign, is in no shard.
-CampaignResults merge_into(const std::filesystem::path& out, std::span<const std::filesystem::path> shards,
-                           const std::string& command, std::span<const std::string> expected_runs);
+// Writes merged results into `out`, which must not exist yet or be empty: settings, calibration and every
+// run's log are copied, results.csv and results.json written last.
+void merge_into(const std::filesystem::path& out, std::span<const std::filesystem::path> shards,
+                const CampaignResults& results);
 
 }  // namespace waverig::evaluation

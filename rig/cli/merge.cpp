@@ -12,7 +12,9 @@
 
 #include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/results_io.h"
+#include "lcmtypes/error.h"
 #include "render/report/report.h"
+#include "rig/campaign/directory_lock.h"
 #include "rig/campaign/plan.h"
 #include "rig/campaign/sweep.h"
 #include "rig/cli/commands.h"
@@ -24,7 +26,22 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> shards;
   std::string out;
+  bool replace = false;
 };
+
+// Nobody takes a shard away while it is read: neither another program, nor --replace where the shard is what
+// an earlier one left unfinished.
+std::vector<rig::DirectoryLock> held(const std::vector<std::filesystem::path>& shards) {
+  std::vector<rig::DirectoryLock> locks;
+  for (const std::filesystem::path& shard : shards) {
+    auto lock = rig::DirectoryLock::take(shard);
+    if (!lock)
+      throw UserError(
+          fmt::format("{}: another waverig is at work in it; expected a finished shard", shard.string()));
+    locks.push_back(std::move(*lock));
+  }
+  return locks;
+}
 
 int merge(const MergeArguments& arguments) {
   const std::vector<std::filesystem::path> shards(arguments.shards.begin(), arguments.shards.end());
@@ -34,15 +51,24 @@ int merge(const MergeArguments& arguments) {
   std::vector<std::string> expected_runs;
   for (const rig::RunPlan& run : rig::plan_campaign(campaign.settings).runs)
     expected_runs.push_back(run.name);
-  const auto results = evaluation::merge_into(arguments.out, shards, command, expected_runs);
-  const std::filesystem::path out = arguments.out;
-  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  draw_campaign(results, out, rig::calibrate(campaign.settings).unit, jobs);
-  evaluation::write_atomically(out / "report.html", render::report_html(results, out));
-  fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover),
-             arguments.out, (out / "report.html").string());
+  evaluation::CampaignResults results = evaluation::merged(shards, expected_runs);
+  results.command = command;
+  const std::vector<rig::DirectoryLock> locks = held(shards);
+
+  using Mode = rig::ResultsDirectory::Mode;
+  rig::ResultsDirectory directory(arguments.out, arguments.replace ? Mode::kReplace : Mode::kFresh,
+                                  /*resumes=*/false);
+  std::filesystem::remove(directory.runs());  // merge_into makes its own
+  evaluation::merge_into(directory.working(), shards, results);
   if (const auto& front_end = campaign.settings.calibration.front_end)
-    estimator::save(front_end->calibration, out / rig::kFrontEndFile);
+    estimator::save(front_end->calibration, directory.working() / rig::kFrontEndFile);
+  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  draw_campaign(results, directory.working(), rig::calibrate(campaign.settings).unit, jobs);
+  evaluation::write_atomically(directory.working() / "report.html",
+                               render::report_html(results, directory.working()));
+  directory.finish();
+  fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover),
+             arguments.out, (std::filesystem::path(arguments.out) / "report.html").string());
   return 0;
 }
 
@@ -50,10 +76,13 @@ int merge(const MergeArguments& arguments) {
 
 void add_merge(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<MergeArguments>();
-  CLI::App* command = app.add_subcommand("merge", "Join the shards of one campaign, and draw and report them");
+  CLI::App* command =
+      app.add_subcommand("merge", "Join the shards of one campaign, and draw and report them");
   command->add_option("shards", arguments->shards, "Results directories of waverig sweep --shard K/N")
       ->required();
   command->add_option("--out", arguments->out, "Results directory, made anew")->required();
+  command->add_flag("--replace", arguments->replace,
+                    "Replace results that are there, once the new ones are whole");
   command->footer(
       "Refuses shards of different settings, seed or version, shards that share a run, and too few of them.\n"
       "Example:\n  waverig merge results/part* --out results/all");

@@ -63,5 +63,39 @@ TEST(Program, AnUnfinishedAnalysisIsNotToldToResume) {
   EXPECT_NE(campaign.err.find("expected --resume to go on or --replace"), std::string::npos) << campaign.err;
 }
 
+constexpr const char* kTwoSettings =
+    "name = \"shards\"\n[sweep]\nperiods_s = [4.0, 5.0]\nheights_cm = [50.0]\n"
+    "duration_s = 30.0\nrepeats = 1\nramp_periods = 1\n";
+
+TEST(Program, AnInterruptedMergeIsNoResultAndIsDoneAnew) {
+  const TemporaryDirectory temporary;
+  temporary.write("c.toml", kTwoSettings);
+  for (const std::string number : {"1", "2"})
+    ASSERT_EQ(run(temporary, "sweep c.toml --out part" + number + " --shard " + number + "/2").status, 0);
+  const Outcome ended = ended_early(temporary, "merge part1 part2 --out all", "all*/results.csv");
+  ASSERT_EQ(ended.status, 128 + SIGTERM) << ended.out << ended.err;
+  EXPECT_FALSE(std::filesystem::exists(temporary / "all"));
+  const Outcome told = run(temporary, "merge part1 part2 --out all");
+  EXPECT_EQ(told.status, 2);
+  EXPECT_NE(told.err.find("all.partial is unfinished; expected --replace to do it anew"), std::string::npos)
+      << told.err;
+  const Outcome anew = run(temporary, "merge part1 part2 --out all --replace");
+  EXPECT_EQ(anew.status, 0) << anew.err;
+  EXPECT_NE(anew.out.find("Report:  all/report.html"), std::string::npos) << anew.out;
+  EXPECT_TRUE(std::filesystem::exists(temporary / "all/report.html"));
+  EXPECT_FALSE(std::filesystem::exists(temporary / "all.partial"));
+}
+
+TEST(Program, AMergeThatIsRefusedLeavesNothing) {
+  const TemporaryDirectory temporary;
+  temporary.write("c.toml", kTwoSettings);
+  ASSERT_EQ(run(temporary, "sweep c.toml --out part1 --shard 1/2").status, 0);
+  EXPECT_EQ(run(temporary, "merge part1 --out all").status, 2) << "too few";
+  EXPECT_FALSE(std::filesystem::exists(temporary / "all.partial"));
+  std::filesystem::rename(temporary / "part1", temporary / "all.partial");
+  EXPECT_EQ(run(temporary, "merge all.partial --out all --replace").status, 2) << "too few";
+  EXPECT_TRUE(std::filesystem::exists(temporary / "all.partial/results.json"));
+}
+
 }  // namespace
 }  // namespace waverig

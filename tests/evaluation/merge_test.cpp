@@ -53,7 +53,7 @@ class Merge : public ::testing::Test {
 
   std::string refusal(const std::vector<fs::path>& shards) {
     try {
-      merge_into(scratch.path() / "out", shards, "merge", expected);
+      merge_into(scratch.path() / "out", shards, merged(shards, expected));
     } catch (const UserError& error) {
       EXPECT_FALSE(fs::exists(scratch.path() / "out" / "results.json"));
       return error.what();
@@ -71,7 +71,8 @@ class Merge : public ::testing::Test {
 TEST_F(Merge, GivesWhatOneMachineWouldHaveGiven) {
   const auto whole = shard("whole", {run("a", 6, 0), run("b", 6, 1), run("c", 12, 0)});
   const auto one = shard("one", {run("c", 12, 0), run("a", 6, 0)}), two = shard("two", {run("b", 6, 1)});
-  merge_into(scratch.path() / "out", std::vector{two, one}, "merge", std::vector<std::string>{"a", "b", "c"});
+  const std::vector shards{two, one};
+  merge_into(scratch.path() / "out", shards, merged(shards, std::vector<std::string>{"a", "b", "c"}));
   EXPECT_EQ(Scratch::read(scratch.path() / "out" / "results.csv"), Scratch::read(whole / "results.csv"));
   EXPECT_EQ(read_results(scratch.path() / "out").runs.size(), 3u);
   for (const char* log : {"a", "b", "c"})
