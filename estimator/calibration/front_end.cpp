@@ -40,38 +40,53 @@ Json json_of(const std::vector<BudgetTerm>& budget) {
   return rows;
 }
 
-// Reads one file with complaints that name the file, the key and what was expected.
+constexpr const char *kList = "a list", *kNumber = "a number", *kText = "text";
+constexpr std::size_t kShown = 40;  // of a value that is refused: enough to find it
+
+// Reads one file with complaints that name the file, the key, the value and what was expected.
 class Reader {
  public:
   Reader(const Json& node, std::string name, std::string key = "")
       : node_(node), name_(std::move(name)), key_(std::move(key)) {}
 
-  Reader at(const std::string& key) const {
-    if (!node_.is_object() || !node_.contains(key)) refuse(key, "is missing");
-    return {node_.at(key), name_, key_.empty() ? key : key_ + "." + key};
+  Reader at(const std::string& key, const char* expected) const {
+    const std::string path = key_.empty() ? key : key_ + "." + key;
+    if (!node_.is_object() || !node_.contains(key))
+      throw UserError(fmt::format("{}: {} is missing: expected {}", name_, path, expected));
+    return {node_.at(key), name_, path};
+  }
+  std::vector<Reader> items(const std::string& key) const { return at(key, kList).items(); }
+  double number(const std::string& key) const { return at(key, kNumber).number(); }
+  double positive(const std::string& key) const {
+    const double value = number(key);
+    if (!(value > 0)) at(key, kNumber).refuse("a number above 0");
+    return value;
+  }
+  std::string text(const std::string& key) const { return at(key, kText).text(); }
+  std::vector<std::string> texts(const std::string& key) const {
+    std::vector<std::string> list;
+    for (const Reader& item : items(key)) list.push_back(item.text());
+    return list;
   }
   std::vector<Reader> items() const {
-    if (!node_.is_array()) refuse("", "expected a list");
+    if (!node_.is_array()) refuse(kList);
     std::vector<Reader> list;
-    for (std::size_t i = 0; i < node_.size(); ++i) list.emplace_back(node_[i], name_, fmt::format("{}[{}]", key_, i));
+    for (std::size_t i = 0; i < node_.size(); ++i)
+      list.emplace_back(node_[i], name_, fmt::format("{}[{}]", key_, i));
     return list;
   }
   double number() const {
-    if (!node_.is_number()) refuse("", "expected a number");
+    if (!node_.is_number()) refuse(kNumber);
     return node_.get<double>();
   }
   std::string text() const {
-    if (!node_.is_string()) refuse("", "expected text");
+    if (!node_.is_string()) refuse(kText);
     return node_.get<std::string>();
   }
-  std::vector<std::string> texts() const {
-    std::vector<std::string> list;
-    for (const Reader& item : items()) list.push_back(item.text());
-    return list;
-  }
-  [[noreturn]] void refuse(const std::string& key, const std::string& why) const {
-    const std::string dot = key.empty() || key_.empty() ? "" : ".";
-    throw UserError(fmt::format("{}: {}{}{}: {}", name_, key_, dot, key, why));
+  [[noreturn]] void refuse(const std::string& expected) const {
+    std::string value = node_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (value.size() > kShown) value = value.substr(0, kShown) + "...";
+    throw UserError(fmt::format("{}: {}: {}: expected {}", name_, key_, value, expected));
   }
 
  private:
@@ -79,32 +94,35 @@ class Reader {
   std::string name_, key_;
 };
 
-TemperatureLaw law_of(const Reader& r) {
+TemperatureLaw law_of(const Reader& parent, const char* key) {
+  const Reader r = parent.at(
+      key, "a law of the temperature: coefficients, covariance, reference_degC, from_degC, to_degC");
   TemperatureLaw law;
-  law.reference_degC = r.at("reference_degC").number();
-  law.from_degC = r.at("from_degC").number();
-  law.to_degC = r.at("to_degC").number();
-  const std::vector<Reader> coefficients = r.at("coefficients").items(), rows = r.at("covariance").items();
+  law.reference_degC = r.number("reference_degC");
+  law.from_degC = r.number("from_degC");
+  law.to_degC = r.number("to_degC");
+  const std::vector<Reader> coefficients = r.items("coefficients"), rows = r.items("covariance");
   const auto n = static_cast<Eigen::Index>(coefficients.size());
   if (n == 0 || rows.size() != coefficients.size())
-    r.refuse("covariance", fmt::format("expected {} rows, one a coefficient, and at least one", n));
+    r.at("covariance", kList).refuse(fmt::format("{} rows, one a coefficient, and at least one", n));
   law.coefficients.resize(n);
   law.covariance.resize(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     law.coefficients[i] = coefficients[static_cast<std::size_t>(i)].number();
     const std::vector<Reader> row = rows[static_cast<std::size_t>(i)].items();
-    if (row.size() != coefficients.size()) r.refuse("covariance", fmt::format("expected {} columns", n));
+    if (row.size() != coefficients.size())
+      rows[static_cast<std::size_t>(i)].refuse(fmt::format("{} columns", n));
     for (Eigen::Index k = 0; k < n; ++k) law.covariance(i, k) = row[static_cast<std::size_t>(k)].number();
   }
   return law;
 }
 
-std::vector<BudgetTerm> budget_of(const Reader& r) {
+std::vector<BudgetTerm> budget_of(const Reader& parent, const char* key) {
   std::vector<BudgetTerm> budget;
-  for (const Reader& item : r.items()) {
-    const std::string type = item.at("type").text();
-    if (type != "A" && type != "B") item.refuse("type", "expected \"A\" or \"B\"");
-    budget.push_back({item.at("name").text(), item.at("sigma").number(), type[0]});
+  for (const Reader& item : parent.items(key)) {
+    const std::string type = item.text("type");
+    if (type != "A" && type != "B") item.at("type", kText).refuse("\"A\" or \"B\"");
+    budget.push_back({item.text("name"), item.number("sigma"), type[0]});
   }
   return budget;
 }
@@ -123,14 +141,15 @@ double FrontEndChannel::half_loop_A(double temperature_degC) const {
   if (above == bias_loop.begin()) return above->half_A;
   if (above == bias_loop.end()) return bias_loop.back().half_A;
   const HalfLoop &low = *std::prev(above), &high = *above;
-  const double part = (temperature_degC - low.temperature_degC) / (high.temperature_degC - low.temperature_degC);
+  const double part =
+      (temperature_degC - low.temperature_degC) / (high.temperature_degC - low.temperature_degC);
   return std::lerp(low.half_A, high.half_A, part);
 }
 
 double FrontEndChannel::bias_expanded_A(double temperature_degC) const {
   const double a = std::abs(half_loop_A(temperature_degC));
   const double sigma = std::max(bias_A.sigma_at(temperature_degC), 1e-15);
-  const auto inside = [&](double U) {   // P(|+-a + N(0, sigma)| <= U)
+  const auto inside = [&](double U) {  // P(|+-a + N(0, sigma)| <= U)
     const double scale = sigma * std::numbers::sqrt2;
     return 0.5 * (std::erf((U - a) / scale) + std::erf((U + a) / scale));
   };
@@ -158,7 +177,7 @@ FrontEndCalibration merge(const FrontEndCalibration& scale_factor, const FrontEn
   FrontEndCalibration merged = scale_factor;
   merged.id = scale_factor.id + "+" + bias.id;
   merged.procedure = scale_factor.procedure + "+" + bias.procedure;
-  merged.measured = std::max(scale_factor.measured, bias.measured);   // ISO 8601: the later one
+  merged.measured = std::max(scale_factor.measured, bias.measured);  // ISO 8601: the later one
   for (FrontEndChannel& c : merged.channels) {
     const FrontEndChannel& b = bias.channel(c.name);
     c.bias_A = b.bias_A;
@@ -207,40 +226,48 @@ std::string to_json(const FrontEndCalibration& c) {
 }
 
 FrontEndCalibration front_end_calibration_from_json(const std::string& text, const std::string& name) {
-  const Json document = Json::parse(text, nullptr, false);
-  if (document.is_discarded()) throw UserError(name + ": expected a front-end calibration as JSON");
+  Json document;
+  try {
+    document = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+    throw UserError(fmt::format("{}, line {}: not valid JSON: expected a front-end calibration", name,
+                                std::count(text.begin(), end, '\n') + 1));
+  } catch (const Json::exception&) {
+    throw UserError(fmt::format("{}: a number that is too large: expected a front-end calibration", name));
+  }
   const Reader root(document, name);
-  if (root.at("schema").text() != kSchema) root.refuse("schema", fmt::format("expected \"{}\"", kSchema));
+  if (root.text("schema") != kSchema) root.at("schema", kText).refuse(fmt::format("\"{}\"", kSchema));
   FrontEndCalibration c;
-  c.id = root.at("id").text();
-  c.procedure = root.at("procedure").text();
-  c.measured = root.at("measured").text();
-  c.unit = root.at("unit").text();
-  c.version = root.at("version").text();
-  c.instruments = root.at("instruments").texts();
-  c.files = root.at("files").texts();
-  for (const Reader& r : root.at("channels").items()) {
+  c.id = root.text("id");
+  c.procedure = root.text("procedure");
+  c.measured = root.text("measured");
+  c.unit = root.text("unit");
+  c.version = root.text("version");
+  c.instruments = root.texts("instruments");
+  c.files = root.texts("files");
+  for (const Reader& r : root.items("channels")) {
     FrontEndChannel channel;
-    channel.name = r.at("name").text();
-    channel.K_N0_C = r.at("K_N0_C").number();
-    channel.K_P0_C = r.at("K_P0_C").number();
-    channel.dsf_N = law_of(r.at("dsf_N"));
-    channel.dsf_P = law_of(r.at("dsf_P"));
-    channel.bias_A = law_of(r.at("bias_A"));
-    for (const Reader& point : r.at("bias_loop").items()) {
+    channel.name = r.text("name");
+    channel.K_N0_C = r.positive("K_N0_C");
+    channel.K_P0_C = r.positive("K_P0_C");
+    channel.dsf_N = law_of(r, "dsf_N");
+    channel.dsf_P = law_of(r, "dsf_P");
+    channel.bias_A = law_of(r, "bias_A");
+    for (const Reader& point : r.items("bias_loop")) {
       const std::vector<Reader> pair = point.items();
-      if (pair.size() != 2) point.refuse("", "expected [temperature_degC, half_A]");
+      if (pair.size() != 2) point.refuse("[temperature_degC, half_A]");
       channel.bias_loop.push_back({pair[0].number(), pair[1].number()});
     }
     if (!std::ranges::is_sorted(channel.bias_loop, {}, &HalfLoop::temperature_degC))
-      r.refuse("bias_loop", "expected ascending temperatures");
-    channel.dsf_N_budget = budget_of(r.at("dsf_N_budget"));
-    channel.dsf_P_budget = budget_of(r.at("dsf_P_budget"));
-    channel.bias_budget = budget_of(r.at("bias_budget"));
+      r.at("bias_loop", kList).refuse("ascending temperatures");
+    channel.dsf_N_budget = budget_of(r, "dsf_N_budget");
+    channel.dsf_P_budget = budget_of(r, "dsf_P_budget");
+    channel.bias_budget = budget_of(r, "bias_budget");
     c.channels.push_back(std::move(channel));
   }
-  c.oscillator = law_of(root.at("oscillator"));
-  c.oscillator_budget = budget_of(root.at("oscillator_budget"));
+  c.oscillator = law_of(root, "oscillator");
+  c.oscillator_budget = budget_of(root, "oscillator_budget");
   return c;
 }
 
@@ -248,8 +275,13 @@ void save(const FrontEndCalibration& calibration, const std::filesystem::path& p
   const std::filesystem::path part = path.string() + ".part";
   {
     std::ofstream out(part, std::ios::binary);
+    if (!out) throw UserError(path.string() + ": cannot be written: expected a writable place");
     out << to_json(calibration) << std::flush;
-    if (!out) throw UserError(path.string() + ": cannot be written");
+    if (!out) {
+      std::error_code ignored;
+      std::filesystem::remove(part, ignored);
+      throw std::runtime_error(path.string() + ": not everything could be written");
+    }
   }
   std::filesystem::rename(part, path);
 }
