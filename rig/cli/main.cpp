@@ -9,6 +9,7 @@
 #include "lcmtypes/error.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/signals.h"
+#include "rig/cli/streams.h"
 #include "rig/version.h"
 
 namespace {
@@ -44,10 +45,31 @@ void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
   }
 }
 
+// How every command ends, by its own answer or by an error.
+template <class Work>
+int ended(Work work) {
+  using namespace waverig;
+  try {
+    return work();
+  } catch (const UserError& error) {
+    return fail(kBadInput, error.what());
+  } catch (const NegativeAnswer& error) {
+    return fail(kAnswerIsNo, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(error);
+  } catch (const cli::Interrupted& told) {
+    std::signal(told.signal, SIG_DFL);
+    return std::raise(told.signal);
+  } catch (const std::exception& error) {
+    return fail(kAnswerIsNo, error.what());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace waverig;
+  cli::hold_standard_streams();
   CLI::App app{"waverig: how well does a low-cost sensor, with its estimator, measure waves?"};
   app.set_version_flag("--version", std::string("waverig ") + kVersion);
   app.require_subcommand(1);
@@ -61,23 +83,17 @@ int main(int argc, char** argv) {
       "  waverig estimate recording.csv.gz --out results/mine     heave and waves of a recording\n"
       "Each command explains itself with --help.");
 
-  try {
-    refuse_unknown_command(app, argc, argv);
-    app.parse(argc, argv);
-    return chosen();
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return fail(kBadInput, error.what());
-  } catch (const UserError& error) {
-    return fail(kBadInput, error.what());
-  } catch (const NegativeAnswer& error) {
-    return fail(kAnswerIsNo, error.what());
-  } catch (const std::filesystem::filesystem_error& error) {
-    return fail(error);
-  } catch (const cli::Interrupted& told) {
-    std::signal(told.signal, SIG_DFL);
-    return std::raise(told.signal);
-  } catch (const std::exception& error) {
-    return fail(kAnswerIsNo, error.what());
-  }
+  return ended([&] {
+    int status = kDone;
+    try {
+      refuse_unknown_command(app, argc, argv);
+      app.parse(argc, argv);
+      status = chosen();
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() != 0) return fail(kBadInput, error.what());
+      status = app.exit(error);  // --help, --version
+    }
+    cli::finish_stdout();
+    return status;
+  });
 }

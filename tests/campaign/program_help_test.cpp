@@ -41,5 +41,30 @@ TEST(Program, HelpOfEveryCommandShowsExamplesOfItsOwn) {
   EXPECT_GT(expect_examples(temporary, ""), 28);
 }
 
+TEST(Program, SaysThatStdoutCouldNotBeWritten) {
+  const TemporaryDirectory temporary;
+  temporary.write("c.toml", kTiny);
+  for (const std::string command :
+       {"plan c.toml", "--help", "--version", "sweep c.toml --jobs 2 --out out"}) {
+    const Outcome full = run(temporary, command + " >/dev/full 2>stderr; exit $?;");
+    EXPECT_EQ(full.status, 1) << command;
+    const std::string said = bytes_of(temporary / "stderr");
+    EXPECT_TRUE(said.starts_with("waverig: stdout: not everything could be written")) << command << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << command << said;
+  }
+  EXPECT_TRUE(std::filesystem::exists(temporary / "out/report.html")) << "whole before it is told";
+}
+
+TEST(Program, WritesIntoNoResultWhatBelongsOnAClosedStdout) {
+  const TemporaryDirectory temporary;
+  temporary.write("c.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep c.toml --out out").status, 0);
+  const Outcome closed = run(temporary, "evaluate out --out anew >&- 2>stderr; exit $?;");
+  EXPECT_EQ(closed.status, 1);
+  EXPECT_EQ(bytes_of(temporary / "stderr"),
+            "waverig: stdout: not everything could be written: Bad file descriptor\n");
+  EXPECT_EQ(bytes_of(temporary / "anew/results.csv"), bytes_of(temporary / "out/results.csv"));
+}
+
 }  // namespace
 }  // namespace waverig
