@@ -323,6 +323,10 @@ TEST_F(Laboratory, BadAddressesAndMissingDevicesAreOneSentenceAndExitTwo) {
   refuses({"motion", campaign, "--run", kRun, "--drive", "rtu:" + path("none"), "--bus", bus_url()}, "none");
   refuses({"recorder", "--out", path("no/such/place.lcm"), "--bus", bus_url()}, "no/such/place.lcm");
   refuses({"recorder", "--out", campaign, "--bus", bus_url()}, "is there already");
+  std::filesystem::create_directories(path("swept.partial/runs"));
+  temporary_.write("swept.partial/runs/first.lcm", "a run that is done");
+  refuses({"evaluator", "--run", kRun, "--out", path("swept"), "--bus", bus_url()}, "swept.partial holds runs");
+  EXPECT_TRUE(std::filesystem::exists(path("swept.partial/runs/first.lcm")));
 }
 
 TEST_F(Laboratory, MissingMulticastRouteIsOneSentenceAndExitTwo) {

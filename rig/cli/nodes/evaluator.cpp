@@ -25,6 +25,13 @@ rig::ResultsDirectory new_directory(const EvaluatorArguments& arguments) {
   if (!arguments.replace && fs::exists(out) && !fs::is_empty(out))
     throw UserError(fmt::format(
         "--out {}: is there already; expected a new directory, or --replace to do it anew", arguments.out));
+  fs::path unfinished = out.filename().empty() ? out.parent_path() : out;
+  unfinished += ".partial";
+  // What an evaluator leaves there is worth nothing: it judged no run. A sweep's runs are another matter.
+  if (!arguments.replace && fs::exists(unfinished / "runs") && !fs::is_empty(unfinished / "runs"))
+    throw UserError(
+        fmt::format("--out {}: {} holds runs of an unfinished sweep; expected a new directory, or --replace",
+                    arguments.out, unfinished.string()));
   return {out, rig::ResultsDirectory::Mode::kReplace};
 }
 
