@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "estimator/calibration/readable_json.h"
+#include "estimator/calibration/whole_file.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::estimator {
@@ -215,10 +216,7 @@ SensorCalibration calibration_from_json(const std::string& text, const std::stri
 }
 
 void store_calibration(const SensorCalibration& calibration, const std::filesystem::path& path) {
-  std::ofstream out(path, std::ios::binary);
-  out << to_json(calibration);
-  out.close();
-  if (!out) throw UserError(fmt::format("{}: cannot be written: expected a writable file", path.string()));
+  write_whole(path, to_json(calibration));
 }
 
 SensorCalibration load_calibration(const std::filesystem::path& path) {

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "estimator/calibration/whole_file.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::estimator {
@@ -272,18 +273,7 @@ FrontEndCalibration front_end_calibration_from_json(const std::string& text, con
 }
 
 void save(const FrontEndCalibration& calibration, const std::filesystem::path& path) {
-  const std::filesystem::path part = path.string() + ".part";
-  {
-    std::ofstream out(part, std::ios::binary);
-    if (!out) throw UserError(path.string() + ": cannot be written: expected a writable place");
-    out << to_json(calibration) << std::flush;
-    if (!out) {
-      std::error_code ignored;
-      std::filesystem::remove(part, ignored);
-      throw std::runtime_error(path.string() + ": not everything could be written");
-    }
-  }
-  std::filesystem::rename(part, path);
+  write_whole(path, to_json(calibration));
 }
 
 FrontEndCalibration load_front_end_calibration(const std::filesystem::path& path) {

@@ -80,10 +80,13 @@ int evaluate_heave(const EvaluateArguments& arguments) {
   waves_file.flush();
   summary_file.write(evaluation::to_json(summary));
   summary_file.flush();
+  const fs::path record = fs::path(arguments.out) / "record.nc";
   if (arguments.netcdf)
-    evaluation::write_netcdf(
-        fs::path(arguments.out) / "record.nc",
-        {heave, waves, spectrum, summary, std::string("waverig ") + kVersion, "Heave of " + arguments.input});
+    evaluation::write_netcdf(record, {heave, waves, spectrum, summary, std::string("waverig ") + kVersion,
+                                      "Heave of " + arguments.input});
+  // While an earlier summary is gone and the new one not there the folder is not finished.
+  fs::remove(fs::path(arguments.out) / "summary.json");
+  if (!arguments.netcdf) fs::remove(record);  // of that earlier call
   waves_file.commit();
   summary_file.commit();
   fmt::print("{}", evaluation::to_json(summary));

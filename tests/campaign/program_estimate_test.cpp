@@ -155,6 +155,37 @@ TEST(Program, AnEarlierEstimateIsReplacedAsAWhole) {
   EXPECT_FALSE(std::filesystem::exists(temporary / "out/record.nc")) << "of the earlier call";
 }
 
+TEST(Program, AnEarlierEvaluationIsReplacedAsAWhole) {
+  const TemporaryDirectory temporary;
+  std::string csv = "utime,heave_m\n";
+  for (int i = 0; i < 3000; ++i)
+    csv += std::to_string(200000 * i) + "," + std::to_string(std::sin(0.2 * i)) + "\n";
+  temporary.write("heave.csv", csv);
+  EXPECT_EQ(run(temporary, "evaluate heave.csv --out out --netcdf").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(temporary / "out/record.nc"));
+  EXPECT_EQ(run(temporary, "evaluate heave.csv --out out").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(temporary / "out/record.nc")) << "of the earlier call";
+}
+
+TEST(Program, KeepsAnEarlierCalibrationWhereThePlaceCannotBeWritten) {
+  const TemporaryDirectory temporary;
+  temporary.write("sides.csv", six_sides(0.25));
+  std::filesystem::create_directories(temporary / "kept/unit.json");
+  const Outcome refused = run(temporary, "calibrate accelerometer sides.csv --out kept/unit.json");
+  EXPECT_EQ(refused.status, 2) << refused.err;
+  EXPECT_NE(refused.err.find("kept/unit.json: cannot be written: Is a directory"), std::string::npos)
+      << refused.err;
+  for (const auto& file : std::filesystem::directory_iterator(temporary / "kept"))
+    EXPECT_EQ(file.path().filename(), "unit.json");
+  temporary.write("unit7.json", "the one before");
+  const Outcome full = run(temporary, "--version >/dev/null; ulimit -f 2; trap '' XFSZ; " WAVERIG_PROGRAM
+                                      " calibrate accelerometer sides.csv --out unit7.json");
+  EXPECT_EQ(full.status, 1) << full.err;
+  EXPECT_NE(full.err.find("unit7.json: not everything could be written: File too large"), std::string::npos)
+      << full.err;
+  EXPECT_EQ(bytes_of(temporary / "unit7.json"), "the one before");
+}
+
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
   const TemporaryDirectory temporary;
   temporary.write("wave.csv", wave_record());
