@@ -93,6 +93,7 @@ void AxisController::start(const RotationProfile& profile, std::int64_t start_ut
   clock_ = {};
   run_start_utime_ = start_utime;
   run_origin_rad_ = target_.angle_rad;
+  target_.profile_s = 0;  // not the end of the run before
   hold_wanted_ = resume_wanted_ = false;
   become(AxisState::kRunning);
 }

@@ -114,7 +114,6 @@ SeaMoments moments_of(const std::vector<WaveComponent>& components) {
     m.m0 += e;
     m.m1 += e * f;
     m.m2 += e * f * f;
-    m.m3 += e * f * f * f;
     m.m4 += e * f * f * f * f;
     a1 += e * std::cos(c.towards_rad);
     b1 += e * std::sin(c.towards_rad);

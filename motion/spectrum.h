@@ -25,7 +25,7 @@ class WaveSpectrum {
 
 // Moments m_n = integral of f^n S(f) df, in m^2 Hz^n, and the usual parameters.
 struct SeaMoments {
-  double m_minus1 = 0, m0 = 0, m1 = 0, m2 = 0, m3 = 0, m4 = 0;
+  double m_minus1 = 0, m0 = 0, m1 = 0, m2 = 0, m4 = 0;
   double mean_direction_from_rad = 0;  // true, in [0, 2 pi); energy-weighted
   double spread_rad = 0;               // circular standard deviation sqrt(2 (1 - r1)), Kuik et al. 1988
 

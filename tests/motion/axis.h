@@ -1,4 +1,4 @@
-// An axis in virtual time: the controller, and the simulated drive that it commands.
+// An axis in virtual time: the controller, the simulated drive that it commands, and the line between them.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -13,9 +13,23 @@ namespace waverig::motion {
 
 inline constexpr std::int64_t kPeriod_us = 10000;
 
+// Hands everything on, and can tell the controller something else than the drive said.
+struct Line final : Drive {
+  explicit Line(SimulatedDrive& far_end) : drive(far_end) {}
+  DriveFeedback exchange(const DriveCommand& command) override {
+    heard = command;
+    DriveFeedback feedback = drive.exchange(command);
+    if (alter) alter(feedback);
+    return feedback;
+  }
+  SimulatedDrive& drive;
+  DriveCommand heard;  // the last command
+  std::function<void(DriveFeedback&)> alter;
+};
+
 struct Axis {
   explicit Axis(const AxisSettings& settings = {}, const SimulatedDriveSettings& drive_settings = {})
-      : drive(drive_settings), controller(std::make_unique<AxisController>(drive, settings)) {}
+      : drive(drive_settings), controller(std::make_unique<AxisController>(line, settings)) {}
 
   const AxisStatus& step() {
     const AxisStatus& status = controller->cycle(utime);
@@ -50,6 +64,7 @@ struct Axis {
   }
 
   SimulatedDrive drive;
+  Line line{drive};
   std::unique_ptr<AxisController> controller;
   std::int64_t utime = 1'000'000;
 };

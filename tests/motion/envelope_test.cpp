@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "motion/kinematics/frames.h"
 
@@ -50,6 +51,27 @@ TEST(Envelope, TwoMetresAtOneSecondNeedFiveGAndClipAFourGPart) {
   ASSERT_TRUE(clips);
   EXPECT_EQ(clips->verdict, Verdict::kRefuse);
   EXPECT_NE(clips->sentence.find("5.03 g and clips at 4 g"), std::string::npos) << clips->sentence;
+}
+
+// At the orbit's lowest point the sensor feels gravity and the wave together.
+TEST(Envelope, AWaveOfThreeAndAHalfGClipsAFourGPart) {
+  EXPECT_TRUE(find(judge(1, 1.74, 2, cheap_sensor()), EnvelopeReason::kClips));
+  EXPECT_FALSE(find(judge(1, 1.45, 2, cheap_sensor()), EnvelopeReason::kClips));
+}
+
+// REFERENCE section 3 grows with T^1.5: at 20 s one wave's height scatters by 1.5 cm.
+TEST(Envelope, WarnsAboveATenthOfTheHeightAndRefusesAboveAHalf) {
+  const auto verdict_at = [](double height_m) -> std::optional<Verdict> {
+    EnvelopeSettings settings = cheap_sensor();
+    settings.drift_mps2 = 0;
+    const auto judgements = judge(20, height_m, 2, settings);
+    const Judgement* noise = find(judgements, EnvelopeReason::kBelowNoise);
+    return noise ? std::optional(noise->verdict) : std::nullopt;
+  };
+  EXPECT_EQ(verdict_at(0.16), std::nullopt);
+  EXPECT_EQ(verdict_at(0.14), Verdict::kWarn);
+  EXPECT_EQ(verdict_at(0.032), Verdict::kWarn);
+  EXPECT_EQ(verdict_at(0.030), Verdict::kRefuse);
 }
 
 TEST(Envelope, ATenthOfAMetreAtTwentySecondsIsBelowNoiseAndDrift) {

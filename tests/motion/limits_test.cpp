@@ -31,6 +31,8 @@ TEST(Limits, AProfileFitsExactlyToItsPeaks) {
   const ProfilePeaks peaks = profile.peaks();
   AxisLimits limits{peaks.rate_radps, peaks.accel_radps2, peaks.jerk_radps3};
   EXPECT_FALSE(exceeds(limits, profile));
+  limits.jerk_radps3 *= 0.999;
+  EXPECT_EQ(exceeds(limits, profile)->kind, LimitKind::kJerk);
   limits.accel_radps2 *= 0.999;
   EXPECT_EQ(exceeds(limits, profile)->kind, LimitKind::kAccel);
   limits.rate_radps *= 0.999;

@@ -130,6 +130,10 @@ TEST(Profile, RefusesWhatMakesNoProfile) {
   EXPECT_THROW(RotationProfile({.steady_s = -1}), UserError);
   EXPECT_THROW(RotationProfile({.ramp_periods = 0}), UserError);
   EXPECT_THROW(RotationProfile({.direction = 0}), UserError);
+  EXPECT_THROW(RotationProfile({.period_s = 1e-3, .steady_s = 1e4}), UserError);  // ten million turns
+  EXPECT_THROW(RotationProfile({.rate_modulation = 0.6, .modulation_cycles = 1}), UserError);
+  EXPECT_THROW(RotationProfile({.rate_drift = -0.5}), UserError);
+  EXPECT_THROW(RotationProfile({.rest_before_s = -1}), UserError);
   try {
     RotationProfile({.period_s = -3});
     FAIL();

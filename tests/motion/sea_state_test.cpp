@@ -182,6 +182,11 @@ TEST(SeaState, SameSeedSameSeaOtherSeedOtherSea) {
   EXPECT_EQ(a[17].phase_rad, b[17].phase_rad);
   EXPECT_EQ(a[17].w_radps, b[17].w_radps);
   EXPECT_NE(a[17].phase_rad, c[17].phase_rad);
+  const auto tilted = [&](std::uint64_t seed) {  // and how the float sways is its own
+    return SeaMotion(a, {.slope_following = 0, .tilt_rad = 0.1, .tilt_period_s = 3, .seed = seed}).at(0).q_NB;
+  };
+  EXPECT_EQ(tilted(5).coeffs(), tilted(5).coeffs());
+  EXPECT_NE(tilted(5).coeffs(), tilted(6).coeffs());
 }
 
 TEST(SeaState, RefusesNonsense) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -96,6 +97,53 @@ TEST(SimulatedDrive, TorqueLimitBoundsTheAcceleration) {
   }
   EXPECT_TRUE(limited);
   EXPECT_NEAR(most, 3, 1e-9);  // 30 Nm on 10 kg m^2
+}
+
+TEST(SimulatedDrive, TurningSteadilyItsTorqueIsThatOfFriction) {
+  SimulatedDriveSettings settings = frictionless();
+  settings.viscous_friction_Nms = 2;
+  settings.coulomb_friction_Nm = 3;
+  SimulatedDrive drive(settings);
+  Player player(drive);
+  for (int i = 1; i <= 1000; ++i) player.play(i < 100 ? 1e-4 * i * i : 1 + 0.02 * (i - 100), i < 100 ? 0.02 * i : 2);
+  EXPECT_NEAR(player.feedback().torque_permille, 1e3 * (3 + 2 * 2) / settings.rated_torque_Nm, 2);
+}
+
+// The weight pulls most where the arm lies level.
+TEST(SimulatedDrive, HoldingAnUnbalancedArmTakesItsWeightTimesTheCosine) {
+  for (const double angle_rad : {0.0, 1.0, 0.5 * pi, pi}) {
+    SimulatedDriveSettings settings = frictionless();
+    settings.unbalance_Nm = 20;
+    settings.initial_angle_rad = angle_rad;
+    SimulatedDrive drive(settings);
+    Player player(drive);
+    for (int i = 1; i <= 500; ++i) player.play(0, 0);
+    EXPECT_NEAR(1e-3 * player.feedback().torque_permille * settings.rated_torque_Nm, 20 * std::cos(angle_rad), 0.2);
+  }
+}
+
+TEST(SimulatedDrive, ATargetRateBeyondItsOwnLimitIsNotFollowed) {
+  SimulatedDriveSettings settings = frictionless();
+  settings.rate_limit_radps = 2;
+  settings.following_window_rad = 100;
+  SimulatedDrive drive(settings);
+  Player player(drive);
+  double fastest = 0;
+  for (int i = 1; i <= 300; ++i) {
+    player.play(0.01 * i, 9);
+    fastest = std::max(fastest, drive.shaft().rate_radps);
+  }
+  EXPECT_LT(fastest, 2.2);
+}
+
+TEST(SimulatedDrive, AResetFaultTakesItsErrorCodeAlong) {
+  SimulatedDrive drive;
+  drive.faults.error_code = 0x2310;
+  drive.advance(0.01);
+  EXPECT_EQ(drive.exchange({}).error_code, 0x2310);
+  const DriveFeedback reset = drive.exchange({.controlword = controlword::kFaultReset});
+  EXPECT_EQ(state_of(reset.statusword), DriveState::kSwitchOnDisabled);
+  EXPECT_EQ(reset.error_code, 0);
 }
 
 TEST(SimulatedDrive, CoggingRipplesTheRateOnceATooth) {
