@@ -31,10 +31,7 @@ void StrapdownNavigator::add(const Increments& now) {
   const Vector3d velocity_B =
       v + 0.5 * a.cross(v) + k * (previous_.angle_B.cross(v) + previous_.velocity_B.cross(a));
 
-  // Earth at the middle of the interval.
-  const Place& start = state_.place;
-  const LocalEarth here = local_earth(start, earth_);
-  const LocalEarth local = local_earth(moved(start, here, state_.velocity_N, dt / 2), earth_);
+  const LocalEarth local = local_earth(state_.place, earth_);
   const Vector3d turn_N = (local.w_ie_N + transport_rate_N(local, state_.velocity_N)) * dt;
 
   // Velocity, eq. (28): half the frame's turn belongs to the specific force, Coriolis is taken at
@@ -43,7 +40,7 @@ void StrapdownNavigator::add(const Increments& now) {
   const Vector3d v_mid_N = state_.velocity_N + velocity_rate_N(local, f_N, state_.velocity_N) * (dt / 2);
   const Vector3d v_end_N = state_.velocity_N + velocity_rate_N(local, f_N, v_mid_N) * dt;
 
-  state_.place = moved(start, local, 0.5 * (state_.velocity_N + v_end_N), dt);
+  state_.place = moved(state_.place, local, 0.5 * (state_.velocity_N + v_end_N), dt);
   state_.velocity_N = v_end_N;
   state_.q_NB = (quaternion_exp(-turn_N) * state_.q_NB * quaternion_exp(rotation_B)).normalized();
   previous_ = now;

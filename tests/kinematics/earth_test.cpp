@@ -144,6 +144,15 @@ TEST(IdealSensors, FeelGravityUpwardsAndTheEarthRateAtRest) {
   EXPECT_LT((rest.q_NB * inertial_rate_B(rest, local) - local.w_ie_N).norm(), 1e-18);
 }
 
+TEST(IdealSensors, CarriedAlongAParallelTurnWithItAboutTheEarthsAxis) {
+  const Place place{50 * kDegree, 0.3, 2000};
+  const LocalEarth local = local_earth(place);
+  BodyMotion travel;
+  travel.velocity_N = Vector3d(0, 250, 0);
+  const double rate = kWgs84.rate_radps + 250 / position_E(place).head<2>().norm();
+  EXPECT_LT((inertial_rate_B(travel, local) - R_NE(place) * Vector3d(0, 0, rate)).norm(), 1e-15);
+}
+
 TEST(IdealSensors, FeelNothingInFreeFall) {
   const LocalEarth local = local_earth({45 * kDegree, 0, 0});
   BodyMotion fall;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string_view>
 
 #include "lcmtypes/error.h"
 #include "tests/motion/axis.h"
@@ -109,7 +111,9 @@ TEST(AxisSupervision, NoSetpointBeyondTheLimitsEverReachesTheDrive) {
 TEST(AxisSupervision, AMeasuredRateBeyondTheLimitStopsTheRun) {
   Axis axis({.limits = {.rate_radps = 2}});
   axis.bring_to_speed();
-  axis.line.alter = [](DriveFeedback& f) { f.velocity = static_cast<std::int32_t>(2.3 / (2 * pi) * kCounts); };
+  axis.line.alter = [](DriveFeedback& f) {
+    f.velocity = static_cast<std::int32_t>(2.3 / (2 * pi) * kCounts);
+  };
   axis.step();
   EXPECT_EQ(axis.controller->status().alarm, Alarm::kRateLimit);
   ASSERT_TRUE(axis.run_to(AxisState::kLocked));
@@ -186,7 +190,8 @@ TEST(AxisSupervision, AHoldThatTheLimitsForbidWaitsAndCanBeTakenBack) {
     axis.run_for(0.1);
     EXPECT_EQ(axis.controller->status().hold, RunClock::State::kRunning);
     if (taken_back) axis.controller->resume();
-    const bool slowed = axis.run_until([](const AxisStatus& s) { return s.hold != RunClock::State::kRunning; }, 30);
+    const bool slowed =
+        axis.run_until([](const AxisStatus& s) { return s.hold != RunClock::State::kRunning; }, 30);
     EXPECT_EQ(slowed, !taken_back);
     EXPECT_EQ(axis.controller->status().alarm, Alarm::kNone) << axis.controller->alarm_message();
   }
@@ -221,6 +226,13 @@ TEST(AxisSupervision, TellsTheTorqueAndItsLimit) {
 TEST(AxisSupervision, RefusesCountsThatMakeRatesBeyond32Bits) {
   SimulatedDrive drive;
   EXPECT_THROW(AxisController(drive, {.counts_per_turn = 1 << 30, .limits = {.rate_radps = 20}}), UserError);
+}
+
+TEST(AxisSupervision, EveryAlarmSaysSomethingElse) {
+  std::set<std::string_view> texts;
+  const int last = static_cast<int>(Alarm::kEmergencyStop);
+  for (int alarm = 0; alarm <= last; ++alarm) texts.insert(text_of(static_cast<Alarm>(alarm)));
+  EXPECT_EQ(texts.size(), static_cast<std::size_t>(last + 1));
 }
 
 }  // namespace

@@ -2,68 +2,27 @@
 // same.
 #include "motion/modbus_drive.h"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <thread>
 
 #include "lcmtypes/error.h"
 #include "motion/axis_controller.h"
-#include "motion/kinematics/random.h"
-#include "motion/modbus_drive_server.h"
 #include "motion/modbus_registers.h"
+#include "tests/motion/modbus_bench.h"
 #include "tests/motion/pty_pair.h"
 
 namespace waverig::motion {
 namespace {
 
 constexpr std::int64_t kPeriod_us = 10000;
-
-// The patience of every test that does not want a timeout.
-ModbusLinkSettings patient(int port = 0) {
-  return {.port = port, .response_timeout_s = 10, .byte_timeout_s = 5};
-}
-
-// A drive and its server in a thread of its own, with a clock that the test sets.
-class Bench {
- public:
-  explicit Bench(const ModbusLinkSettings& settings = patient())
-      : server_(drive, settings, [this] {
-          if (const int ms = stall_ms.exchange(0); ms > 0)
-            std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-          return now_us.load();
-        }) {
-    begin();
-  }
-  void begin() {
-    thread_ = std::jthread([this](const std::stop_token& stop) { server_.run(stop); });
-  }
-  // The drive may be touched only while its server rests.
-  void rest() {
-    thread_.request_stop();
-    if (thread_.joinable()) thread_.join();
-  }
-  int port() const { return server_.port(); }
-
-  std::atomic<std::int64_t> now_us = 0;
-  std::atomic<int> stall_ms = 0;  // how long the next reply is held back, really
-  SimulatedDrive drive;
-
- private:
-  ModbusDriveServer server_;
-  std::jthread thread_;
-};
 
 // One control period against the bench.
 const AxisStatus& step(AxisController& controller, std::atomic<std::int64_t>& now_us) {
@@ -250,58 +209,6 @@ TEST(ModbusDrive, SomeoneWhoOnlyReadsDoesNotFeedTheWatchdog) {
   EXPECT_EQ(seen.error_code, 0x8130);
   bench.rest();
   EXPECT_EQ(bench.drive.shaft().rate_radps, 0);
-}
-
-TEST(ModbusDriveServer, SurvivesHostileBytesAndServesTheOthers) {
-  Bench bench({.port = 0, .response_timeout_s = 10, .byte_timeout_s = 0.02});
-  ModbusDrive remote(patient(bench.port()));
-  RandomStream random(5, "hostile");
-  for (int trial = 0; trial < 60; ++trial) {
-    const int socket_fd = socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(bench.port()));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    ASSERT_EQ(connect(socket_fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    std::array<std::uint8_t, 300> bytes{};
-    for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random.bits());
-    // Every other one a plausible header: protocol 0, unit 1, a function that writes, wild addresses and
-    // counts.
-    constexpr std::uint8_t kFunctions[] = {0x06, 0x10, 0x16, 0x17};
-    if (trial % 2 == 0) {
-      bytes[2] = bytes[3] = bytes[4] = 0;
-      bytes[6] = 1;
-      bytes[7] = kFunctions[(trial / 2) % 4];
-      if (trial % 4 == 0) bytes[8] = bytes[10] = bytes[12] = bytes[14] = 0;
-    }
-    const auto size = static_cast<std::size_t>(random.uniform(1, 300));
-    send(socket_fd, bytes.data(), size, MSG_NOSIGNAL);
-    const auto sequence = static_cast<std::uint16_t>(trial + 1);
-    ASSERT_EQ(remote.exchange({.sequence = sequence}).sequence, sequence);
-    close(socket_fd);
-  }
-}
-
-TEST(ModbusDriveServer, IsReadAndCommandedByAnIndependentClient) {
-  if (std::system("command -v mbpoll > /dev/null 2>&1") != 0) GTEST_SKIP() << "mbpoll is not installed";
-  Bench bench;
-  const auto mbpoll = [&](const std::string& arguments) {
-    const std::string command =
-        "mbpoll -0 -1 -q -o 10 -m tcp -a 1 -p " + std::to_string(bench.port()) + " " + arguments + " 2>&1";
-    std::string output;
-    std::FILE* pipe = popen(command.c_str(), "r");
-    if (!pipe) return output;
-    std::array<char, 256> line{};
-    while (std::fgets(line.data(), static_cast<int>(line.size()), pipe)) output += line.data();
-    pclose(pipe);
-    return output;
-  };
-  // Switch on disabled, then ready to switch on after shutdown (6) was written to the controlword.
-  EXPECT_NE(mbpoll("-t 4:hex -r 105 -c 1 127.0.0.1").find("0x0040"), std::string::npos);
-  const std::string written = mbpoll("-t 4 -r 1 127.0.0.1 6");
-  EXPECT_NE(written.find("Written 1 references"), std::string::npos) << written;
-  const std::string after = mbpoll("-t 4:hex -r 105 -c 1 127.0.0.1");
-  EXPECT_NE(after.find("0x0021"), std::string::npos) << after;
 }
 
 TEST(ModbusRtu, ControllerTurnsTheArmOverASerialLine) {

@@ -41,6 +41,25 @@ TEST(RegularWave, VelocityAccelerationAndAngularRateAreDerivatives) {
   }
 }
 
+// Its crest runs forward; a quarter of a period later the wave ahead is higher, and the bow with it.
+TEST(RegularWave, RunsTowardsItsDirectionAndLiftsTheBowBehindTheCrest) {
+  for (const double towards : {0.0, 0.8, -2.0}) {
+    const Vector3d way_N(std::cos(towards), std::sin(towards), 0);
+    const RegularWave ahead({.period_s = 6, .towards_rad = towards, .tilt_rad = 0.1, .heading_rad = towards});
+    EXPECT_NEAR(ahead.at(0).velocity_N.dot(way_N), pi / 6, 1e-12);
+    EXPECT_NEAR((ahead.at(0).velocity_N - pi / 6 * way_N).norm(), 0, 1e-12);
+    const Euler behind_crest = euler_of(ahead.at(1'500'000).q_NB);
+    EXPECT_NEAR(behind_crest.pitch_rad, 0.1, 1e-12);
+    EXPECT_NEAR(behind_crest.roll_rad, 0, 1e-12);
+    EXPECT_NEAR(std::remainder(behind_crest.yaw_rad - towards, 2 * pi), 0, 1e-12);
+  }
+}
+
+TEST(RegularWave, BeginsWhenItIsTold) {
+  const RegularWave wave({.period_s = 5}), later({.period_s = 5, .start_utime = 7'000'000});
+  EXPECT_EQ(later.at(8'300'000).position_N, wave.at(1'300'000).position_N);
+}
+
 TEST(RegularWave, AmplitudeModulationReachesItsDepth) {
   const RegularWave wave(
       {.period_s = 5, .height_m = 2, .amplitude_modulation = 0.25, .modulation_period_s = 200});

@@ -176,6 +176,16 @@ TEST(SeaState, AnswersDoNotDependOnTheOrderOfQuestions) {
   }
 }
 
+TEST(SeaState, BeginsWhenItIsTold) {
+  FloatSettings settings = lively();
+  SeaMotion sea(draw_components({}), settings);
+  settings.start_utime = 1'700'000'000'000'000;
+  SeaMotion later(draw_components({}), settings);
+  const BodyMotion a = sea.at(12'345'678), b = later.at(settings.start_utime + 12'345'678);
+  EXPECT_EQ(a.position_N, b.position_N);
+  EXPECT_EQ(a.q_NB.coeffs(), b.q_NB.coeffs());
+}
+
 TEST(SeaState, SameSeedSameSeaOtherSeedOtherSea) {
   const auto a = draw_components({.seed = 5}), b = draw_components({.seed = 5}),
              c = draw_components({.seed = 6});
