@@ -105,7 +105,8 @@ TEST(SimulatedDrive, TurningSteadilyItsTorqueIsThatOfFriction) {
   settings.coulomb_friction_Nm = 3;
   SimulatedDrive drive(settings);
   Player player(drive);
-  for (int i = 1; i <= 1000; ++i) player.play(i < 100 ? 1e-4 * i * i : 1 + 0.02 * (i - 100), i < 100 ? 0.02 * i : 2);
+  for (int i = 1; i <= 1000; ++i)
+    player.play(i < 100 ? 1e-4 * i * i : 1 + 0.02 * (i - 100), i < 100 ? 0.02 * i : 2);
   EXPECT_NEAR(player.feedback().torque_permille, 1e3 * (3 + 2 * 2) / settings.rated_torque_Nm, 2);
 }
 
@@ -118,7 +119,8 @@ TEST(SimulatedDrive, HoldingAnUnbalancedArmTakesItsWeightTimesTheCosine) {
     SimulatedDrive drive(settings);
     Player player(drive);
     for (int i = 1; i <= 500; ++i) player.play(0, 0);
-    EXPECT_NEAR(1e-3 * player.feedback().torque_permille * settings.rated_torque_Nm, 20 * std::cos(angle_rad), 0.2);
+    EXPECT_NEAR(1e-3 * player.feedback().torque_permille * settings.rated_torque_Nm, 20 * std::cos(angle_rad),
+                0.2);
   }
 }
 
