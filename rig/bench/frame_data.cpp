@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kHead = 8;  // columns, rows
 constexpr std::uint32_t kColumnsMax = 1000, kRowsMax = 100'000'000;
+constexpr std::size_t kDeflateMost = 1040;   // bytes out of one: a header that claims more is believed no memory
 
 }  // namespace
 
@@ -42,7 +43,8 @@ std::vector<std::vector<std::int32_t>> unpack_columns(const std::vector<std::uin
     std::memcpy(&columns, bytes.data(), 4);
     std::memcpy(&rows, bytes.data() + 4, 4);
   }
-  const bool sane = bytes.size() >= kHead && columns <= kColumnsMax && rows <= kRowsMax;
+  const bool sane = bytes.size() >= kHead && columns <= kColumnsMax && rows <= kRowsMax &&
+                    std::size_t{4} * columns * rows <= kDeflateMost * bytes.size();
   std::vector<std::uint8_t> planes(sane ? std::size_t{4} * columns * rows : 0);
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
       libdeflate_alloc_decompressor(), libdeflate_free_decompressor);

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <numeric>
 #include <set>
 #include <thread>
 
 #include "lcmtypes/error.h"
 #include "rig/bench/bench.h"
+#include "rig/bench/frame_data.h"
 #include "rig/bench/simulation/simulated_laboratory.h"
 #include "tests/bench/short_sequence.h"
 
@@ -81,11 +83,26 @@ TEST(Runner, CarriesOutEveryPlannedStepOnceAndLeavesTheBenchSafe) {
 TEST(Runner, KeepsEveryFrameOfAHundredHertzRecording) {
   OpenRun run;
   EXPECT_EQ(run.run(), "done");
-  for (const RecordingRow& row : run.store.recordings()) {
+  const auto sum = [](const std::vector<std::int32_t>& column) {
+    return std::accumulate(column.begin(), column.end(), std::int64_t{0});
+  };
+  int kept = 0;
+  for (const RecordingRow& row : run.store.recordings(true)) {
     EXPECT_EQ(row.ticks, 500);
     EXPECT_EQ(row.frames, 501);
     EXPECT_EQ(row.lost, 0);
+    if (row.data.empty()) continue;
+    ++kept;
+    // Ticks, then N and P of each channel, from frame to frame.
+    const std::vector<std::vector<std::int32_t>> columns = unpack_columns(row.data);
+    ASSERT_EQ(columns.size(), 1 + 2 * row.channels.size());
+    EXPECT_EQ(columns[0], std::vector<std::int32_t>(500, 1));
+    for (std::size_t i = 0; i < row.channels.size(); ++i) {
+      EXPECT_EQ(sum(columns[1 + 2 * i]), row.channels[i].N);
+      EXPECT_EQ(sum(columns[2 + 2 * i]), row.channels[i].P);
+    }
   }
+  EXPECT_GT(kept, 0);
 }
 
 TEST(Runner, FramesBrokenAtFivePercentCostFramesButNoCharge) {

@@ -58,6 +58,23 @@ TEST(MotorField, OfTheRotorKeepsItsStrengthAndTurnsWithTheArm) {
   }
 }
 
+// What lies across the way to the sensor has half the field there, the other way.
+TEST(MotorField, OfTheRotorAcrossTheArmAndAlongItsAxisTurnsWithTheArmToo) {
+  const double azimuth = 0.4;
+  const Vector3d outwards(std::cos(azimuth), std::sin(azimuth), 0),
+      axis(-std::sin(azimuth), std::cos(azimuth), 0);
+  for (double angle = 0; angle < 6; angle += 0.5) {
+    const Vector3d along = std::cos(angle) * outwards - std::sin(angle) * Vector3d::UnitZ();
+    const Vector3d onwards =
+        -std::sin(angle) * outwards - std::cos(angle) * Vector3d::UnitZ();  // as angle grows
+    const auto field = [&](const Vector3d& moment_Am2) {
+      return motor_field_N_uT({.azimuth_rad = azimuth, .rotor_moment_Am2 = moment_Am2}, 0.5 * along);
+    };
+    EXPECT_LT((field({0, 1, 0}) + 0.8 * onwards).norm(), 1e-12) << angle;
+    EXPECT_LT((field({0, 0, 1}) + 0.8 * axis).norm(), 1e-12) << angle;
+  }
+}
+
 TEST(MotorField, OfTheStatorChangesAsTheArmTurns) {
   MagnetometerSettings settings = clean();
   settings.motor.stator_moment_N_Am2 = {0, 0, 1};

@@ -205,6 +205,16 @@ TEST(Gyroscope, CountsByItsDatasheet) {
             Eigen::Vector3i(40, 0, -2));
 }
 
+TEST(Gyroscope, NoUnitIsDrawnBeyondTheOffsetThatItsDataSheetAllows) {
+  GyroscopeSettings s;
+  s.offset_sigma_radps = 1;
+  s.offset_limit_radps = 1.5;
+  double largest = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed)
+    largest = std::max(largest, draw_gyroscope(s, seed).offset_radps.cwiseAbs().maxCoeff());
+  EXPECT_EQ(largest, 1.5);
+}
+
 TEST(Gyroscope, AddsOffsetTemperatureAndGravity) {
   GyroscopeParameters unit;
   unit.offset_radps << 0.01, 0, 0;
