@@ -110,6 +110,19 @@ TEST(RotatingArm, GondolaAnswersTheArmAsADrivenPendulumOfSmallAngle) {
               0.005 * expected);  // the closed form leaves out vertical acceleration, 0.2 % of g
 }
 
+// At rest against the drag: g sin(swing) / l = 2 zeta_b w0 arm', the way the arm turns.
+TEST(RotatingArm, BearingFrictionDragsTheGondolaRoundWithTheArm) {
+  RotatingArmSettings s = bare_arm();
+  s.bearing_damping = 0.1;
+  s.pendulum_damping = 0.5;
+  const double w0 = std::sqrt(s.gravity_mps2 / s.pendulum_length_m);
+  for (const double period_s : {6.0, -6.0}) {
+    RotatingArm arm(s, 0);
+    motions(arm, 20, [&](double t) { return turning(t, period_s); });
+    EXPECT_NEAR(std::sin(arm.swing_rad()), 2 * 0.1 * 2 * std::numbers::pi / period_s / w0, 1e-9);
+  }
+}
+
 TEST(RotatingArm, FollowsApparentGravityWhenTheWaveIsLong) {
   RotatingArm arm(bare_arm(), 0.5);
   const auto m = motions(arm, 60, [](double t) { return turning(t, 12); });
