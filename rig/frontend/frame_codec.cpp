@@ -139,7 +139,7 @@ std::int64_t FrameDecoder::steps(std::int64_t from, std::int64_t to) const {
 const Frame* FrameDecoder::deliver(Frame& frame, std::int64_t jump) {
   sequence_ += jump;
   frame.sequence = sequence_;
-  frame.missing = statistics_.frames == 0 ? 0 : jump - 1;
+  frame.missing = jump - 1;
   statistics_.lost += frame.missing;
   ++statistics_.frames;
   if (counter_) last_ = frame.raw[*counter_];

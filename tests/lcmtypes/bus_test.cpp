@@ -1,7 +1,10 @@
 #include "lcmtypes/bus.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <memory>
+#include <string>
 #include <waverig/heave_t.hpp>
 #include <waverig/imu_t.hpp>
 
@@ -55,6 +58,38 @@ TEST(Bus, CarriesAHandlersExceptionPastLcmAndGoesOn) {
   EXPECT_THROW(bus.handle(), std::runtime_error);
   EXPECT_TRUE(bus.handle());
   EXPECT_EQ(received, 2);
+}
+
+TEST(Bus, ReportsTheFirstOfTwoFailures) {
+  Bus bus;
+  bus.subscribe<imu_t>("IMU", [](const imu_t&) { throw std::runtime_error("first"); });
+  bus.subscribe<imu_t>("IMU", [](const imu_t&) { throw std::runtime_error("second"); });
+  bus.publish("IMU", imu_t{});
+  try {
+    bus.handle();
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "first");
+  }
+}
+
+// LCM's own default drops all but thirty that wait.
+TEST(Bus, DropsNothingThatWaitsOnANetworkEither) {
+  const std::string url = "udpm://239.255.76.67:" + std::to_string(20000 + ::getpid() % 20000) + "?ttl=0";
+  std::unique_ptr<Bus> bus;
+  try {
+    bus = std::make_unique<Bus>(url);
+  } catch (const UserError& error) {
+    GTEST_SKIP() << error.what();
+  }
+  constexpr std::int64_t kBurst = 300;
+  std::int64_t received = 0;
+  bus->subscribe<imu_t>("IMU", [&](const imu_t& m) { EXPECT_EQ(m.seq, received++); });
+  imu_t message{};
+  for (message.seq = 0; message.seq < kBurst; ++message.seq) bus->publish("IMU", message);
+  while (received < kBurst && bus->handle(5000)) {
+  }
+  EXPECT_EQ(received, kBurst);
 }
 
 TEST(Bus, AllowsPublishingInsideAHandler) {

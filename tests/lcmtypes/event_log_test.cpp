@@ -4,7 +4,10 @@
 #include <lcm/lcm-cpp.hpp>
 #include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
 #include <waverig/imu_t.hpp>
 
 #include "lcmtypes/error.h"
@@ -69,15 +72,34 @@ TEST_F(EventLog, TellsATruncatedLogFromAWholeOneAtEveryLength) {
   }
 }
 
+// Event: sync, number, time, length of the channel's name at byte 20, of the data at byte 24.
 TEST_F(EventLog, RefusesAnImplausibleLengthInsteadOfAllocatingIt) {
-  std::FILE* file = std::fopen(path_.c_str(), "r+b");
-  std::fseek(file, 24, SEEK_SET);   // the data length of the first event
-  const unsigned char huge[4] = {0x7f, 0xff, 0xff, 0xff};
-  std::fwrite(huge, 1, 4, file);
-  std::fclose(file);
-  EventLogReader reader(path_);
-  LogEvent event;
-  EXPECT_THROW(reader.next(event), UserError);
+  const auto size = static_cast<long>(std::filesystem::file_size(path_) / kEvents);
+  for (const long place : {24L, 20L, size}) {  // and no sync word where the second event begins
+    SetUp();
+    std::FILE* file = std::fopen(path_.c_str(), "r+b");
+    std::fseek(file, place, SEEK_SET);
+    const unsigned char huge[4] = {0x7f, 0xff, 0xff, 0xff};
+    std::fwrite(huge, 1, 4, file);
+    std::fclose(file);
+    EventLogReader reader(path_);
+    LogEvent event;
+    try {
+      while (reader.next(event)) {
+      }
+      FAIL() << place;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find(place == size ? "sync word missing" : "not plausible"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
+TEST(EventLogWriter, SaysWhereTheDiskDidNotTakeEverything) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  EventLogWriter writer("/dev/full");
+  writer.write(0, "IMU", "data", 4);
+  EXPECT_THROW(writer.close(), std::runtime_error);
 }
 
 }  // namespace

@@ -86,6 +86,8 @@ TEST(EstimatorNode, NoticesThatARecordsFirstSamplesWereLost) {
   samples.record(RecordAction::kEnd);
   EXPECT_EQ(samples.node().samples(), 97);
   EXPECT_EQ(samples.node().samples_missing(), 3);
+  ASSERT_EQ(samples.heave.size(), 97u);
+  for (const heave_t& m : samples.heave) EXPECT_EQ((m.flags & flag::kGap) != 0, m.seq == 3) << m.seq;
 }
 
 TEST(EstimatorNode, TellsWhatItsMethodLeavesOut) {
@@ -110,6 +112,7 @@ TEST(EstimatorNode, ServesRecordAfterRecord) {
   }
   EXPECT_EQ(samples.node().records(), 3);
   EXPECT_EQ(samples.node().samples(), 150);
+  EXPECT_EQ(samples.node().watch().words(), "") << "what lies between two records is no gap in either";
   EXPECT_EQ(samples.heave.size(), 150u);
 }
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <vector>
+#include <waverig/alarm_t.hpp>
 #include <waverig/axis_t.hpp>
 #include <waverig/record_t.hpp>
 #include <waverig/run_t.hpp>
@@ -78,6 +81,7 @@ TEST(MotionNode, ToldToStopEndsTheRecordAndLeavesTheDriveOff) {
   const RunWatch watch(laboratory.bus());
   laboratory.run_until(15);
   ASSERT_FALSE(laboratory.node().finished());
+  EXPECT_FALSE(laboratory.node().at_rest());
   laboratory.node().stop();
   laboratory.run_until(25);
   EXPECT_TRUE(laboratory.node().finished());
@@ -118,6 +122,28 @@ TEST(MotionNode, TellsTheBusOfAnAlarmAndOfItsReason) {
   EXPECT_TRUE(watch.ended());
   EXPECT_NE(watch.stopped().find("alarm"), std::string::npos) << watch.stopped();
   EXPECT_TRUE(laboratory.node().at_rest());
+}
+
+// A drive that has much to complain of.
+struct Talkative final : motion::Drive {
+  motion::DriveFeedback exchange(const motion::DriveCommand&) override {
+    throw std::runtime_error(std::string(1000, 'x'));
+  }
+};
+
+TEST(MotionNode, TellsOfAnAlarmAsMuchAsItsMessageHolds) {
+  Bus bus;
+  const RunWatch watch(bus);
+  std::string text;
+  bus.subscribe<alarm_t>(channel::kAlarm,
+                         [&](const alarm_t& m) { text.assign(std::begin(m.text), std::end(m.text)); });
+  Talkative drive;
+  MotionNode node(bus, drive, {}, motion::RotationProfile(kProfile), {});
+  for (std::int64_t utime = 0; utime < 50 * kPeriod_us; utime += kPeriod_us) node.cycle(utime);
+  bus.drain();
+  EXPECT_TRUE(node.finished());
+  EXPECT_EQ(text, node.alarm().substr(0, sizeof alarm_t{}.text));
+  EXPECT_EQ(watch.stopped(), text);
 }
 
 }  // namespace

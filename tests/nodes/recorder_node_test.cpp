@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <vector>
 #include <waverig/imu_t.hpp>
 
 #include "lcmtypes/channels.h"
+#include "lcmtypes/event_log.h"
 #include "tests/campaign/temporary_directory.h"
 
 namespace waverig::rig {
@@ -25,6 +28,32 @@ TEST(RecorderNode, NamesTheChannelOnWhichMessagesWereLost) {
   node.close();
   EXPECT_EQ(node.events(), 9);
   EXPECT_EQ(node.missing(), (std::map<std::string, std::int64_t>{{std::string(channel::kImu), 2}}));
+}
+
+// What reads event logs expects their times to grow, whoever said what when.
+TEST(RecorderNode, ItsTimesGrowAndLcmsOwnTestIsNoPartOfIt) {
+  const TemporaryDirectory temporary;
+  Bus bus;
+  RecorderNode node(bus, temporary / "run.lcm");
+  bus.publish_raw("LCM_SELF_TEST", "lcm self test", 13);
+  imu_t m{};
+  for (const std::int64_t utime : {5, 3, 9}) {
+    m.utime = utime;
+    m.seq = utime;
+    bus.publish(channel::kImu, m);
+  }
+  bus.drain();
+  EXPECT_FALSE(std::filesystem::exists(temporary / "run.lcm")) << "not named before it is whole";
+  node.close();
+  EventLogReader log(temporary / "run.lcm");
+  std::vector<std::int64_t> times, seqs;
+  for (LogEvent event; log.next(event);) {
+    ASSERT_TRUE(event.decode(m));
+    times.push_back(event.utime);
+    seqs.push_back(m.seq);
+  }
+  EXPECT_EQ(times, (std::vector<std::int64_t>{5, 5, 9}));
+  EXPECT_EQ(seqs, (std::vector<std::int64_t>{5, 3, 9}));
 }
 
 }  // namespace

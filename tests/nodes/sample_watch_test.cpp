@@ -41,6 +41,14 @@ TEST_F(SampleWatchTest, TellsAClockThatWasSetBackAndByHowMuch) {
             "time 47660000: was the clock set back by 12.3 s?)");
 }
 
+TEST_F(SampleWatchTest, OfTwoClocksSetBackItNamesTheFirst) {
+  feed(0, 60);
+  feed(50, 70);
+  feed(65, 80);
+  EXPECT_NE(watch_.words().find("from sample 6001, time 50000000: was the clock set back by 10.0 s?"), std::string::npos)
+      << watch_.words();
+}
+
 TEST_F(SampleWatchTest, TakesNoStragglersForAClock) {
   feed(0, 30);
   watch_.add(sample(29'990'000));

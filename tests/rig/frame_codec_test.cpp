@@ -195,6 +195,43 @@ TEST(FrameDecoder, DropsAFrameWhoseCounterTheNextOneDoesNotBearOut) {
   EXPECT_EQ(decoder.statistics().lost, 0);
 }
 
+TEST(FrameDecoder, DropsWildFramesThatDoNotBearEachOtherOut) {
+  auto frames = frames_of(100, 10);
+  frames.insert(frames.begin() + 5, frames_of(20000, 1)[0]);
+  frames.insert(frames.begin() + 5, frames_of(40000, 1)[0]);
+  FrameDecoder decoder(layout());
+  EXPECT_EQ(counters(decoder, joined(frames)).size(), 10U);
+  EXPECT_EQ(decoder.statistics().unconfirmed, 2);
+}
+
+// Of sixteen numbers half are behind: a jump of nine says nothing.
+TEST(FrameDecoder, BelievesANarrowCounterNoLongGap) {
+  FrameLayout l;
+  l.length_bytes = 3;
+  l.sync = {0xAA};
+  l.terminator = {0x0D};
+  l.fields = {{.name = "n", .type = FieldType::kUnsigned, .bit_offset = 8, .bits = 4}};
+  l.counter = "n";
+  const FrameEncoder encoder(l);
+  Bytes wire;
+  for (const std::int64_t n : {0, 1, 2, 11, 3, 4}) encoder.append(std::vector<std::int64_t>{n}, wire);
+  FrameDecoder decoder(l);
+  EXPECT_EQ(counters(decoder, wire), (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(decoder.statistics().unconfirmed, 1);
+}
+
+TEST(FrameDecoder, WithoutACrcHoldsTheFrameAgainstItsTerminator) {
+  FrameLayout l;
+  l.length_bytes = 4;
+  l.sync = {0xAA};
+  l.terminator = {0x0D, 0x0A};
+  l.fields = {{.name = "x", .type = FieldType::kUnsigned, .bit_offset = 8, .bits = 8}};
+  FrameDecoder decoder(l);
+  EXPECT_EQ(counters(decoder, Bytes{0xAA, 1, 0x0D, 0x0A, 0xAA, 2, 0x0D, 0x0B, 0xAA, 3, 0x0D, 0x0A}),
+            (std::vector<std::int64_t>{1, 3}));
+  EXPECT_EQ(decoder.statistics().broken, 1);
+}
+
 TEST(FrameDecoder, FollowsAUnitThatStartsAnew) {
   auto frames = frames_of(30000, 5);
   for (const Bytes& f : frames_of(0, 5)) frames.push_back(f);

@@ -1,5 +1,6 @@
 #include "rig/frontend/frame_layout.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -96,6 +97,15 @@ TEST(FrameLayout, NamesFileLineAndKeyOfWhatDoesNotFit) {
   EXPECT_COMPLAINT("[-10, 0, 10]", "[10, 0, 10]", "ascending");
   EXPECT_COMPLAINT("[0xAA, 0x55]", "[0xAA, 1.5]", "whole numbers from 0 to 255");
   EXPECT_COMPLAINT("length_bytes = 12", "length_bytes = 0", "length_bytes");
+  EXPECT_COMPLAINT("bit_offset = 29\nbits = 11", "bit_offset = 17\nbits = 64", "a field within eight bytes");
+  EXPECT_COMPLAINT("length_bytes = 12", "length_bytes = 2", "a frame longer than its sync and terminator");
+  for (const char* other : {"x", "y"})
+    EXPECT_COMPLAINT("counter = \"n\"", fmt::format("counter = \"{}\"", other),
+                     "an unsigned field of 4 to 32 bits");
+  EXPECT_COMPLAINT("bits = 8\n", "bits = 3\n", "an unsigned field of 4 to 32 bits");
+  EXPECT_COMPLAINT("byte_offset = 10", "byte_offset = 12", "byte_offset");
+  EXPECT_COMPLAINT("width = 8", "width = 12", "whole bytes");
+  EXPECT_COMPLAINT("sync = [0xAA, 0x55]\n", "", "at least one byte");
   EXPECT_COMPLAINT("type = \"float\"", "type = \"double\"", "expected one of");
 }
 

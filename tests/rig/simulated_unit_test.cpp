@@ -84,6 +84,15 @@ TEST(SimulatedUnit, StampsTheMiddleOfEachInterval) {
   }
 }
 
+TEST(SimulatedUnit, IsAsWarmAsItWasPoweredUpLongAgo) {
+  UnitSettings settings = ideal_unit();
+  settings.temperature = {.mean_degC = 20, .warm_up_degC = 5, .warm_up_time_s = 100};
+  settings.power_up_utime = kBegin - 100'000'000;
+  const Recording r = record(settings, draw_unit(settings, 1), 0.1, level);
+  ASSERT_FALSE(r.samples.empty());
+  EXPECT_NEAR(r.samples.front().temperature_degC, 20 + 5 * (1 - std::exp(-1.0)), 0.01);
+}
+
 TEST(SimulatedUnit, CountsConserveTheIntegralOfSpecificForce) {
   const auto motion = [](double t) {
     BodyMotion m;
@@ -208,6 +217,7 @@ TEST(SimulatedUnit, SaysThereIsNoFieldWhereTheMagnetometerIsBeyondItsRange) {
   settings.magnetometer->largest_count = 200;  // 20 uT
   const auto samples = record(settings, draw_unit(settings, 1), 0.1, level).samples;
   EXPECT_NE(samples[0].flags & flag::kNoMagnetometer, 0);
+  EXPECT_EQ(samples[0].m_B_uT, Vector3d::Zero());
 }
 
 TEST(SimulatedUnit, SaysTheSameOfItsOtherSensorsWithAMagnetometerAndWithout) {
