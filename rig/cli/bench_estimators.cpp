@@ -98,7 +98,9 @@ std::vector<BenchCase> cases(bool full) {
 }
 
 std::vector<BenchMethod> methods_for(BenchMotion motion) {
-  if (motion == BenchMotion::kRegular) return {{"harmonic"}, {"lee2014"}, {"realtime"}};
+  // lee2014 tells the trace of its eq. (10), drift and all; what it corrects are its waves.
+  if (motion == BenchMotion::kRegular)
+    return {{"harmonic"}, {.name = "lee2014", .tells_heave = false}, {"realtime"}};
   return {{"realtime"}, {"realtime", 0.5}, {"realtime", 2}, {"smoothed"}, {"spectral"}};
 }
 
@@ -244,7 +246,7 @@ void add_bench_estimators(CLI::App& app, Command& chosen) {
       "the whole record) where the spectrum is known and nothing disturbs but the accelerometer's white\n"
       "noise and wandering bias (Wiener); of a record that begins with path and speed unknown. Hm0,\n"
       "Tm02 and mean height against those of the record itself; std over the Cramer-Rao bound of a single\n"
-      "wave's height. Examples:\n"
+      "wave's height. Of lee2014 the waves alone: its trace is not corrected. Examples:\n"
       "  waverig bench-estimators\n"
       "  waverig bench-estimators --full --out results/estimators\n"
       "  waverig bench-estimators --rigs 200\n"

@@ -170,8 +170,8 @@ Figure border_figure(const TiltStudy& study, const std::vector<BorderPoint>& bor
   constexpr const char* kNames[] = {"Roll", "Pitch", "Heading"};
   Figure figure{
       .title = "Where the error formulas stop being good enough",
-      .subtitle = fmt::format("Below a line the single error is told to a tenth of its size; roll = pitch, "
-                              "heading {:.0f}°, dip {:.0f}°",
+      .subtitle = fmt::format("Below a line the single error is told to a tenth of its size; dashed: the "
+                              "document's 1 m/s²; heading {:.0f}°, dip {:.0f}°",
                               study.settings.heading_rad[0] / kDegree, study.settings.dip_rad / kDegree),
       .columns = 3,
       .height_mm = 90};
@@ -179,7 +179,7 @@ Figure border_figure(const TiltStudy& study, const std::vector<BorderPoint>& bor
     Panel panel{.title = kNames[a],
                 .x = {.label = "Roll = pitch", .unit = "°", .padding = 0},
                 .y = {.scale = render::Scale::kLog, .low = 5e-3, .high = 1},
-                .legend = a == 0 ? render::Legend::kFree : render::Legend::kNone};
+                .legend = render::Legend::kNone};
     if (a == 0) panel.y.label = "Accelerometer error (1 σ), of g";
     std::vector<double> tilt_deg, first, second, floor, top;
     for (const BorderPoint& point : border) {
@@ -189,26 +189,23 @@ Figure border_figure(const TiltStudy& study, const std::vector<BorderPoint>& bor
       floor.push_back(5e-3);
       top.push_back(1);
     }
-    panel.marks = {Band{.x = tilt_deg,
-                        .low = floor,
-                        .high = first,
-                        .name = "linear",
-                        .look = {.color = 2, .alpha = 0.25}},
-                   Band{.x = tilt_deg,
-                        .low = first,
-                        .high = second,
-                        .name = "second order",
-                        .look = {.color = 1, .alpha = 0.25}},
-                   Band{.x = tilt_deg,
-                        .low = second,
-                        .high = top,
-                        .name = "exact figure",
-                        .look = {.color = render::kFaintInk, .alpha = 0.15}},
-                   Line{.x = tilt_deg, .y = first, .look = {.color = 2}},
-                   Line{.x = tilt_deg, .y = second, .look = {.color = 1}},
-                   Rule{.at = study.settings.accel_error_sigma_mps2 / study.settings.gravity_mps2,
-                        .name = "the document's 1 m/s²",
-                        .look = {.color = render::kInk, .width_pt = 0.8, .dash = render::Dash::kDashed}}};
+    panel.marks = {
+        Band{.x = tilt_deg, .low = floor, .high = first, .look = {.color = 2, .alpha = 0.25}},
+        Band{.x = tilt_deg, .low = first, .high = second, .look = {.color = 1, .alpha = 0.25}},
+        Band{.x = tilt_deg, .low = second, .high = top, .look = {.color = render::kFaintInk, .alpha = 0.15}},
+        Line{.x = tilt_deg, .y = first, .look = {.color = 2}},
+        Line{.x = tilt_deg, .y = second, .look = {.color = 1}},
+        Rule{.at = study.settings.accel_error_sigma_mps2 / study.settings.gravity_mps2,
+             .look = {.color = render::kInk, .width_pt = 0.8, .dash = render::Dash::kDashed}}};
+    // Named where they are: a legend of one panel would lift its title above those beside it.
+    const std::size_t middle = tilt_deg.size() / 4;
+    const auto name = [&](const char* text, double low, double high) {
+      panel.marks.emplace_back(
+          Note{.x = tilt_deg[middle], .y = std::sqrt(low * high), .text = text, .in_data = true});
+    };
+    name("linear", floor[middle], first[middle]);
+    name("second order", first[middle], second[middle]);
+    name("exact figure", second[middle], top[middle]);
     figure.panels.push_back(panel);
   }
   return figure;

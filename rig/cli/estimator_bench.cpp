@@ -197,7 +197,7 @@ BenchFigures judge_method(const BenchMethod& chosen, const BenchRecord& record,
   method->finish(found);
   const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
   figures.us_a_sample = took.count() / static_cast<double>(record.samples.size());
-  judge_heave(record, found, figures);
+  if (chosen.tells_heave) judge_heave(record, found, figures);
   judge_waves(record, found, unit, figures);
   return figures;
 }

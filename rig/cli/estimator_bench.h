@@ -37,6 +37,7 @@ std::optional<evaluation::HeaveBound> bound_of(const BenchCase& settings, const 
 struct BenchMethod {
   std::string name;
   double fixed_lag_s = 0;
+  bool tells_heave = true;  // false: its trace is not meant to be heave, only its waves are judged
   std::string title() const;
 };
 
