@@ -21,7 +21,8 @@ constexpr double kDotsPerInch = 72;   // a figure of this resolution has a pixel
 
 int even(double px) { return 2 * static_cast<int>(px / 2); }
 
-// The samples of a window, as they were up to now.
+// The samples of a window, as they were up to now. Before the first of all stands that one, a point that
+// shows nothing: a film's beginning lacks no data.
 template <class Sample, class Value>
 Line line_of(const std::vector<Sample>& samples, std::int64_t start, double from_s, double to_s,
              Value value) {
@@ -29,7 +30,7 @@ Line line_of(const std::vector<Sample>& samples, std::int64_t start, double from
   const auto utime = [&](double s) { return start + std::llround(s / kMicrosecond); };
   auto it = std::lower_bound(samples.begin(), samples.end(), utime(from_s),
                              [](const Sample& s, std::int64_t t) { return s.utime < t; });
-  for (; it != samples.end() && it->utime <= utime(to_s); ++it) {
+  for (; it != samples.end() && (it->utime <= utime(to_s) || it == samples.begin()); ++it) {
     line.x.push_back(static_cast<double>(it->utime - start) * kMicrosecond);
     line.y.push_back(value(*it));
   }

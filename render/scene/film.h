@@ -27,10 +27,10 @@ class FilmFrames {
   FilmFrames(Canvas& canvas, const RigMotion& motion, const FilmSettings& settings);
   // The picture stays until the next one.
   const Image& at(double time_s);
-
- private:
+  // The traces beside the scene.
   Figure traces(double time_s) const;
 
+ private:
   Canvas& canvas_;
   const RigMotion& motion_;
   FilmSettings settings_;

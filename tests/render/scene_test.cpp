@@ -9,6 +9,8 @@ extern "C" {
 #include <cmath>
 
 #include "lcmtypes/error.h"
+#include "render/figure_writer.h"
+#include "render/layout.h"
 #include "render/scene/film.h"
 #include "tests/render/example_campaign.h"
 #include "tests/render/picture.h"
@@ -144,6 +146,21 @@ TEST(RigScene, IsBitIdenticalOnAnotherCanvas) {
       on_b(b, motion, {.width_px = 320, .height_px = 180});
   on_b.at(55);
   EXPECT_EQ(on_a.at(60).rgba, on_b.at(60).rgba);
+}
+
+TEST(Film, LacksNoDataInItsFirstFrame) {
+  evaluation::RunRecord run = test::example_run();
+  for (auto& sample : run.imu) sample.utime += 1000;  // as a sensor's samples come: after the record's start
+  for (auto& [method, heave] : run.heave)
+    for (auto& sample : heave) sample.utime += 1000;
+  const RigMotion motion(run, "");
+  Canvas canvas;
+  const FilmFrames frames(canvas, motion, {.width_px = 320, .height_px = 180});
+  Figure figure = frames.traces(0);
+  prepare_fonts(figure, canvas.fonts());
+  canvas.fonts().bake();
+  for (const PanelPlan& panel : planned(figure, canvas.fonts()).panels)
+    EXPECT_TRUE(panel.has_data) << panel.panel.title;
 }
 
 TEST(Film, HoldsItsFramesInH264) {
