@@ -10,7 +10,8 @@
 namespace waverig::rig::bench {
 namespace {
 
-constexpr double kStep_degC = 1;  // between the temperatures that are looked at
+constexpr double kLargestOffDesign = 0.1;  // no converter that works is further
+constexpr double kStep_degC = 1;           // between the temperatures that are looked at
 
 template <class Value>
 double largest(const estimator::TemperatureLaw& over, Value&& value) {
@@ -75,6 +76,12 @@ double scale_expanded(const estimator::FrontEndChannel& channel) {
   });
 }
 
+double scale_off_design(const estimator::FrontEndChannel& channel) {
+  return largest(channel.dsf_N, [&](double T) {
+    return std::max(std::abs(channel.dsf_N.at(T)), std::abs(channel.dsf_P.at(T)));
+  });
+}
+
 double bias_expanded_A(const estimator::FrontEndChannel& channel) {
   return largest(channel.bias_A, [&](double T) { return channel.bias_expanded_A(T); });
 }
@@ -84,9 +91,13 @@ std::vector<Verdict> hold_against_limits(const Sequence& sequence, const Analysi
   for (const ChannelAnalysis& measured : analysis.channels) {
     const UnitDescription::Channel& design = *sequence.laboratory.unit.channel(measured.channel);
     const estimator::FrontEndChannel& channel = analysis.calibration.channel(measured.channel);
-    if (!measured.scale_factors.empty())
+    if (!measured.scale_factors.empty()) {
       verdicts.push_back(
           {measured.channel, "scale factor", scale_expanded(channel), design.scale_limit, "1"});
+      // Small uncertainty of what cannot be: the laboratory file describes another unit than the one there.
+      if (const double off = scale_off_design(channel); off > kLargestOffDesign)
+        verdicts.push_back({measured.channel, "off its design", off, kLargestOffDesign, "1"});
+    }
     if (measured.bias)
       verdicts.push_back({measured.channel, "bias", bias_expanded_A(channel), design.bias_limit_A, "A"});
   }

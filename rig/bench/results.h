@@ -9,11 +9,13 @@
 
 namespace waverig::rig::bench {
 
-// A channel's result held against the unit's specification (laboratory file: scale_limit, bias_limit).
+// A channel's result held against the unit's specification (laboratory file: scale_limit, bias_limit); scale
+// factors a tenth or more off those of the laboratory file too.
 struct Verdict {
-  std::string channel, quantity;  // "scale factor", "bias"
-  double value = 0, limit = 0;    // the largest expanded uncertainty (k = 2) over the calibrated temperatures
-  std::string base;               // SI unit of both
+  std::string channel, quantity;  // "scale factor", "bias", "off its design"
+  double value = 0, limit = 0;  // the largest expanded uncertainty (k = 2) over the calibrated temperatures,
+                                // or the largest deviation from the design
+  std::string base;             // SI unit of both
   bool passed() const { return value <= limit; }
 };
 std::string shown(double value, const std::string& base);  // relative ("1") in ppm, currents ("A") in nA
@@ -21,7 +23,8 @@ std::vector<Verdict> hold_against_limits(const Sequence& sequence, const Analysi
 std::string table_of(const std::vector<Verdict>& verdicts);  // as the terminal shows it
 
 // Largest over the temperatures that were calibrated, k = 2.
-double scale_expanded(const estimator::FrontEndChannel& channel);  // relative, of the worse reset current
+double scale_expanded(const estimator::FrontEndChannel& channel);    // relative, of the worse reset current
+double scale_off_design(const estimator::FrontEndChannel& channel);  // largest too, of both reset currents
 double bias_expanded_A(const estimator::FrontEndChannel& channel);
 
 std::string channels_csv(const Analysis& analysis);

@@ -60,6 +60,17 @@ TEST(BenchReport, HoldsFiguresResultsInstrumentsAndFiles) {
 
   const std::vector<std::string> settings = procedure_figure(run.sequence, store).panels.at(1).y.categories;
   EXPECT_NE(std::ranges::find(settings, "\u2212100 µA"), settings.end()) << "as people write it";
+  for (const render::Panel& panel : {procedure_figure(run.sequence, store).panels.at(0), figures.front().figure.panels.at(0)}) {
+    EXPECT_TRUE(panel.x.label.starts_with("Time since")) << panel.x.label;
+    EXPECT_EQ(panel.x.low, 0) << "the time since the beginning has a 0";
+  }
+  EXPECT_TRUE(std::ranges::all_of(verdicts, &Verdict::passed));
+  Analysis other_unit = analysis;
+  other_unit.calibration.channels.front().dsf_P.coefficients[0] = -0.97;
+  const std::vector<Verdict> other = hold_against_limits(run.sequence, other_unit);
+  EXPECT_EQ(other.size(), verdicts.size() + 1);
+  EXPECT_FALSE(std::ranges::all_of(other, &Verdict::passed));
+  EXPECT_NE(table_of(other).find("off its design       9.7e+05 ppm"), std::string::npos) << table_of(other);
   EXPECT_EQ(closure_figure(analysis).panels.size(), 2U);
   Analysis gyros = analysis;
   std::erase_if(gyros.channels, [](const ChannelAnalysis& channel) { return !channel.channel.starts_with("gyro"); });

@@ -24,6 +24,9 @@ double hours(std::int64_t utime, std::int64_t start_utime) {
   return static_cast<double>(utime - start_utime) * kMicrosecond / kHour_s;
 }
 
+// From 0: the first thing that is shown happens a little later.
+Axis since_beginning() { return {.label = "Time since the beginning", .unit = "h", .low = 0, .padding = 0}; }
+
 struct CurrentUnit {
   const char* name;
   double factor;
@@ -145,7 +148,7 @@ Panel whole_procedure(const Sequence& sequence, const std::map<int, StepRow>& st
   }
   Gantt gantt;
   for (const auto& [category, block] : blocks) gantt.add(category, block.series, block.from, block.to);
-  return gantt.panel("(a) The whole run", {.label = "Time since the beginning", .unit = "h", .padding = 0});
+  return gantt.panel("(a) The whole run", since_beginning());
 }
 
 // The settings of the first channel at the first temperature.
@@ -169,7 +172,7 @@ std::optional<Panel> one_channel(const Sequence& sequence, const std::map<int, S
   }
   if (block.empty()) return std::nullopt;
   return gantt.panel(fmt::format("(b) The settings of {}", channel),
-                     {.label = "Time since its first setting", .unit = "min", .padding = 0});
+                     {.label = "Time since its first setting", .unit = "min", .low = 0, .padding = 0});
 }
 
 }  // namespace
@@ -187,9 +190,8 @@ Figure windows_figure(const std::vector<LiveWindow>& windows, const Traces& trac
 Figure temperature_figure(const Sequence& sequence, const Store& store, const Traces& traces) {
   const std::int64_t start = store.info().started_utime;
   Figure figure{.title = "Temperature profile", .subtitle = sequence.title, .height_mm = 85};
-  Panel panel{.x = {.label = "Time since the beginning", .unit = "h", .padding = 0},
-              .y = {.label = "Temperature", .unit = "°C"},
-              .legend = render::Legend::kAbove};
+  Panel panel{
+      .x = since_beginning(), .y = {.label = "Temperature", .unit = "°C"}, .legend = render::Legend::kAbove};
   Line unit{.name = "unit", .look = {.color = 0}},
       target{.name = "chamber, told", .look = {.color = render::kFaintInk, .dash = render::Dash::kDashed}};
   for (std::size_t i = 0; i < traces.time_s().size(); ++i) {
