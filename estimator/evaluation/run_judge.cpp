@@ -95,7 +95,6 @@ void RunJudge::add(std::string_view method, const estimator::Wave& wave) {
   OfMethod& m = of(method);
   if (!m.waves.empty() && m.waves.back().start_utime == wave.start_utime) return;  // sent twice
   m.waves.push_back(wave);
-  m.series = {};
 }
 
 void RunJudge::add(std::string_view method, const estimator::SeaState& sea) {

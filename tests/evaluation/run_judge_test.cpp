@@ -79,6 +79,40 @@ TEST(RunJudge, JudgesOnlyWholeWavesOfTheSteadyPart) {
   EXPECT_NEAR(r.true_tm02_s, kPeriod, 1e-3);
 }
 
+TEST(RunJudge, CountsAWaveThatWasSentTwiceOnce) {
+  RunJudge judge("run", {});
+  play(judge, [&](std::int64_t t) {
+    for (int times = 0; times < 2 && t % (6 * kSecond) == 0; ++times) judge.add("m", wave_at(t, 0.59));
+  });
+  EXPECT_EQ(judge.finish().at(0).statistics.waves, 8);
+}
+
+// In the ramps the arm's plane shall lie elsewhere: what is said of the whole record is held against the
+// steady part alone.
+TEST(RunJudge, HoldsADirectionAgainstTheTruthOfTheSteadyPart) {
+  const auto true_direction_with = [](bool ramps_elsewhere) {
+    RunJudge judge("run", {});
+    judge.add(phase(Phase::kRampIn, 0));
+    for (std::int64_t t = 0; t <= 72 * kSecond; t += 20'000) {
+      if (t == 12 * kSecond) judge.add(phase(Phase::kSteady, t));
+      if (t == 60 * kSecond) judge.add(phase(Phase::kRampOut, t));
+      const bool ramp = t < 12 * kSecond || t > 60 * kSecond;
+      truth_t m = truth(t);
+      (ramp && ramps_elsewhere ? m.east_m : m.north_m) =
+          0.29 * std::sin(kOmega * 1e-6 * static_cast<double>(t));
+      judge.add(m);
+    }
+    estimator::SeaState sea;
+    sea.duration_s = 72;
+    sea.mean_direction_rad = 0;
+    judge.add("m", sea);
+    return judge.finish().at(0).seas.at(0).direction.mean_direction_rad;
+  };
+  EXPECT_NEAR(true_direction_with(false), std::numbers::pi,
+              1e-3);  // the crest runs north: it comes from the south
+  EXPECT_EQ(true_direction_with(true), true_direction_with(false));
+}
+
 TEST(RunJudge, LeavesOutWavesCutByTheRecordsEdge) {
   RunJudge judge("run", {});
   estimator::Wave cut = wave_at(18 * kSecond, 0.3);
@@ -197,7 +231,8 @@ TEST(RunJudge, CountsTheWavesOfAMethodThatGivesHeaveOnly) {
   EXPECT_NEAR(r.statistics.mean_period_s, kPeriod, 1e-3);
 }
 
-RunResult of_heave(double gain, double sigma_m, std::int64_t from, std::int64_t to, JudgeSettings settings = {}) {
+RunResult of_heave(double gain, double sigma_m, std::int64_t from, std::int64_t to,
+                   JudgeSettings settings = {}) {
   RunJudge judge("run", settings);
   play(judge, [&](std::int64_t t) {
     estimator::HeaveSample h;
@@ -209,18 +244,23 @@ RunResult of_heave(double gain, double sigma_m, std::int64_t from, std::int64_t 
   return judge.finish().at(0);
 }
 
-// A heave that is a tenth too low by its scale, as its program says with 3 cm of 30: U of the mean holds the error.
+// A heave that is a tenth too low by its scale, as its program says with 3 cm of 30: U of the mean holds the
+// error.
 TEST(RunJudge, CarriesAStatedSigmaOfHeaveAsCommonToAllWaves) {
   const RunResult r = of_heave(0.9, 0.03, 0, 72 * kSecond);
-  EXPECT_NEAR(r.waves.at(0).wave.calibration_sigma_m, 0.06, 1e-12) << "crest and trough, in opposite directions";
+  EXPECT_NEAR(r.waves.at(0).wave.calibration_sigma_m, 0.06, 1e-12)
+      << "crest and trough, in opposite directions";
   EXPECT_NEAR(r.statistics.expanded_uncertainty_m, 0.12, 1e-3);
-  EXPECT_GT(r.statistics.expanded_uncertainty_m, std::abs(r.statistics.mean_height_m - r.statistics.mean_true_height_m));
+  EXPECT_GT(r.statistics.expanded_uncertainty_m,
+            std::abs(r.statistics.mean_height_m - r.statistics.mean_true_height_m));
   for (const double nothing : {0.0, estimator::kUnknown})
-    EXPECT_TRUE(std::isnan(of_heave(0.9, nothing, 0, 72 * kSecond).statistics.expanded_uncertainty_m)) << nothing;
+    EXPECT_TRUE(std::isnan(of_heave(0.9, nothing, 0, 72 * kSecond).statistics.expanded_uncertainty_m))
+        << nothing;
 }
 
 TEST(RunJudge, FlagsAHeaveThatMissesMoreThanOneWaveOfTheSteadyPart) {
-  const RunResult whole = of_heave(1, 0.01, 0, 72 * kSecond), late = of_heave(1, 0.01, 17 * kSecond, 72 * kSecond),
+  const RunResult whole = of_heave(1, 0.01, 0, 72 * kSecond),
+                  late = of_heave(1, 0.01, 17 * kSecond, 72 * kSecond),
                   third = of_heave(1, 0.01, 0, 28 * kSecond);
   EXPECT_NEAR(whole.heave_coverage, 1, 1e-9);
   EXPECT_EQ(whole.statistics.flags & flag::kGap, 0);
