@@ -11,7 +11,7 @@ namespace {
 RunResult repeat(int number) {
   RunResult run;
   run.run = std::to_string(number);
-  run.method = "m";
+  run.method = "harmonic";
   run.period_s = 6;
   run.height_m = 1;
   run.repeat = number;
