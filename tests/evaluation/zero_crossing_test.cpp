@@ -75,6 +75,16 @@ TEST(ZeroCrossing, CountsARippleOnlyWithoutADeadBand) {
   for (const CountedWave& wave : waves) EXPECT_NEAR(wave.period_s, 8, 0.3);
 }
 
+// Four crests; between the second and the third the trough stays within the dead band.
+TEST(ZeroCrossing, ATroughWithinTheDeadBandPartsNoWaves) {
+  const Series s = sampled(20, 50, [](double t) {
+    const double h = harmonic(t, 5);
+    return t > 6.25 && t < 11.25 && h < 0 ? 0.05 * h : h;
+  });
+  const std::size_t all = count_waves(s.utime, s.heave_m, {.remove_mean = false}).size();
+  EXPECT_EQ(count_waves(s.utime, s.heave_m, {.remove_mean = false, .dead_band_m = 0.1}).size(), all - 1);
+}
+
 TEST(ZeroCrossing, LetsNoWaveReachOverAGap) {
   Series s = sampled(100, 10, [](double t) { return harmonic(t, 5); });
   const std::size_t whole = count_waves(s.utime, s.heave_m).size();
