@@ -117,6 +117,17 @@ TEST(HeaveAgainstTruth, LeavesOutWhatIsUnknownOrAtRest) {
   EXPECT_LT(c.rmse_m(), 1e-3);
 }
 
+TEST(HeaveAgainstTruth, LeavesOutTheEdgesAtBothEnds) {
+  const HeaveSeries truth = series(100, 100, 0, 0);
+  HeaveSeries heave = truth;
+  for (std::size_t i = 0; i < heave.heave_m.size(); ++i)
+    if (i < 950 || i >= 9050) heave.heave_m[i] += i < 950 ? 1 : -1;
+  EXPECT_GT(compare_with_truth(heave, truth, {}).rmse_m(), 0.1);
+  const auto c = compare_with_truth(heave, truth, {.edge_s = 10});
+  EXPECT_LT(c.rmse_m(), 1e-9);
+  EXPECT_NEAR(c.samples(), 8000, 4);
+}
+
 // The straight line over a gap is nobody's estimate, and nobody's truth.
 TEST(HeaveAgainstTruth, LeavesOutTheGapsOfEither) {
   const HeaveSeries whole = series(100, 100, 0, 0);
