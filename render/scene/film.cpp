@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kSceneShare = 0.58;  // of a frame's width
 constexpr double kWindowPeriods = 2;  // of the traces
+constexpr double kMostFrames = 1e6;   // nine hours
 constexpr double kDotsPerInch = 72;   // a figure of this resolution has a pixel a point
 
 int even(double px) { return 2 * static_cast<int>(px / 2); }
@@ -148,8 +149,12 @@ std::vector<double> frame_times_s(const RigMotion& motion, const FilmSettings& s
   duration_s = std::min(duration_s, last_s - begin_s);
   std::vector<double> times_s;
   const double step_s = settings.speed / settings.frames_per_s;
+  if (!(duration_s / step_s < kMostFrames))
+    throw UserError(fmt::format("--speed {:g}: {:.3g} frames; expected a film of less than {:g}",
+                                settings.speed, duration_s / step_s, kMostFrames));
   for (double t = 0; t < duration_s - 1e-9; t = step_s * static_cast<double>(times_s.size()))
     times_s.push_back(begin_s + t);
+  if (times_s.empty()) times_s.push_back(begin_s);  // of a moment
   return times_s;
 }
 

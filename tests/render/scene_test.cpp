@@ -193,6 +193,13 @@ TEST(Film, HoldsItsFramesInH264) {
   EXPECT_EQ(packets, 12);
 }
 
+TEST(Film, HasAFrameOfAMomentAndNoMoreThanAFileCanHold) {
+  const evaluation::RunRecord run = test::example_run();
+  const RigMotion motion(run, "");
+  EXPECT_EQ(frame_times_s(motion, {.begin_s = 50, .duration_s = 1e-9}), std::vector<double>{50});
+  EXPECT_THROW(frame_times_s(motion, {.begin_s = 50, .speed = 1e-300}), UserError);
+}
+
 TEST(Film, LeavesNoFileBehindWhereItFails) {
   const test::TemporaryFolder folder;
   const evaluation::RunRecord run = test::example_run();
