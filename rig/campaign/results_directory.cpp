@@ -23,9 +23,16 @@ std::string read_text(const fs::path& path) {
   return text.str();
 }
 
-fs::path partial_of(fs::path directory) {
-  if (directory.filename().empty()) directory = directory.parent_path();  // DIR/ means DIR
-  return directory += ".partial";
+fs::path beside(fs::path directory, const char* suffix) { return directory += suffix; }
+
+// What can be renamed and have a neighbour: the directory that a link leads to, and no "DIR/" and no ".".
+fs::path place_of(fs::path directory) {
+  constexpr int kMostLinks = 40;  // as Linux; what remains one leads in a circle
+  const auto without_slash = [](const fs::path& p) { return p.filename().empty() ? p.parent_path() : p; };
+  directory = without_slash(directory);
+  for (int links = 0; links < kMostLinks && fs::is_symlink(directory); ++links)
+    directory = without_slash(directory.parent_path() / fs::read_symlink(directory));
+  return directory.filename() == "." || directory.filename() == ".." ? fs::canonical(directory) : directory;
 }
 
 // Of a campaign, or of waverig analyse compass.
@@ -53,17 +60,17 @@ void take_file(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode, bool resumes)
-    : directory_(directory), working_(partial_of(directory)) {
-  if (fs::exists(directory_) && !fs::is_directory(directory_))
+    : directory_(directory), place_(place_of(directory)), working_(beside(place_, ".partial")) {
+  if (fs::exists(place_) && !fs::is_directory(place_))
     throw UserError(fmt::format("--out {}: is a file; expected a directory", directory_.string()));
-  const bool finished = fs::exists(directory_) && !fs::is_empty(directory_);
+  const bool finished = fs::exists(place_) && !fs::is_empty(place_);
   const bool begun = fs::exists(working_);
   if (begun) lock();
   if (finished && mode != Mode::kReplace && !(begun && mode == Mode::kResume))
     throw UserError(
         fmt::format("--out {}: is there already; expected a new directory, or --replace to do it anew",
                     directory_.string()));
-  if (finished && !holds_results(directory_))
+  if (finished && !holds_results(place_))
     throw UserError(fmt::format(
         "--out {}: holds no results that --replace could replace; expected a results directory or a new one",
         directory_.string()));
@@ -109,16 +116,14 @@ void ResultsDirectory::claim(const std::string& resolved_settings, const std::st
 }
 
 void ResultsDirectory::finish() {
-  if (fs::exists(directory_)) {
-    fs::path old = directory_;
-    if (old.filename().empty()) old = old.parent_path();
-    old += ".replaced";
+  if (fs::exists(place_)) {
+    const fs::path old = beside(place_, ".replaced");
     fs::remove_all(old);
-    fs::rename(directory_, old);
-    fs::rename(working_, directory_);
+    fs::rename(place_, old);
+    fs::rename(working_, place_);
     fs::remove_all(old);
   } else {
-    fs::rename(working_, directory_);
+    fs::rename(working_, place_);
   }
 }
 

@@ -34,8 +34,8 @@ class ResultsDirectory {
  private:
   void lock();
 
-  std::filesystem::path directory_, working_;
-  std::optional<DirectoryLock> lock_;  // of working_
+  std::filesystem::path directory_, place_, working_;  // as it was named; where it is
+  std::optional<DirectoryLock> lock_;                  // of working_
 };
 
 // A campaign judged into another directory: settings, calibrations and logs come with it, so that figures,

@@ -47,6 +47,32 @@ TEST(ResultsDirectory, KeepsTheOldResultsUntilTheNewAreWhole) {
   EXPECT_EQ(bytes_of(temporary / "out/results.json"), "new");
 }
 
+TEST(ResultsDirectory, StandsWhereALinkLeadsAndTheLinkStays) {
+  const TemporaryDirectory temporary;
+  fs::create_directories(temporary / "disk/old");
+  temporary.write("disk/old/results.json", "old");
+  fs::create_directory_symlink("disk/old", temporary / "there");
+  fs::create_directory_symlink("disk/new", temporary / "not_yet");
+  for (const auto& [link, target] : {std::pair{"there", "disk/old"}, {"not_yet", "disk/new"}}) {
+    ResultsDirectory directory(temporary / link, Mode::kReplace);
+    EXPECT_EQ(directory.working(), temporary / (std::string(target) + ".partial"));
+    std::ofstream(directory.working() / "results.json") << "new";
+    directory.finish();
+    EXPECT_TRUE(fs::is_symlink(temporary / link));
+    EXPECT_EQ(bytes_of(temporary / target / "results.json"), "new");
+  }
+}
+
+TEST(ResultsDirectory, ReplacesTheDirectoryThatOneStandsIn) {
+  const TemporaryDirectory temporary;
+  fs::create_directories(temporary / "here");
+  temporary.write("here/results.json", "old");
+  ResultsDirectory directory(temporary / "here/.", Mode::kReplace);
+  std::ofstream(directory.working() / "results.json") << "new";
+  directory.finish();
+  EXPECT_EQ(bytes_of(temporary / "here/results.json"), "new");
+}
+
 TEST(ResultsDirectory, ReplacesNothingButResults) {
   const TemporaryDirectory temporary;
   temporary.write("recording.csv", "utime");
@@ -79,7 +105,9 @@ TEST(ResultsDirectory, ResumesOnlyWhatItsOwnVersionBegan) {
     FAIL() << "runs of two versions in one campaign";
   } catch (const UserError& refusal) {
     const std::string sentence = refusal.what();
-    EXPECT_NE(sentence.find("campaign.toml:1: '# waverig 1.0': was begun by another version"), std::string::npos) << sentence;
+    EXPECT_NE(sentence.find("campaign.toml:1: '# waverig 1.0': was begun by another version"),
+              std::string::npos)
+        << sentence;
     EXPECT_NE(sentence.find("expected '# waverig 1.0+1'"), std::string::npos) << sentence;
   }
   EXPECT_NO_THROW(again.claim("seed = 1\n", "1.0"));
