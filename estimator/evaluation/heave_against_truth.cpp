@@ -1,5 +1,7 @@
 #include "estimator/evaluation/heave_against_truth.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +38,9 @@ HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& 
     told[i] = estimate.bridged() <= longest_told && reference.bridged() <= longest;
   }
   const double rate_hz = 1 / (static_cast<double>(step) * kMicrosecond);
+  if (!(settings.high_pass_hz < rate_hz / 2))
+    throw UserError(fmt::format("--high-pass-hz {:g}: expected less than {:g}, half the rate of the truth",
+                                settings.high_pass_hz, rate_hz / 2));
   if (settings.high_pass_hz > 0) {
     h = high_passed(h, rate_hz, settings.high_pass_hz);
     t = high_passed(t, rate_hz, settings.high_pass_hz);
@@ -53,6 +58,10 @@ HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& 
     if (!known || !told[i] || (!truth.moving.empty() && !truth.moving[row])) continue;
     comparison.add(h[i], t[i], (t[i + 1] - t[i - 1]) * rate_hz / 2);
   }
+  if (comparison.samples() == 0)
+    throw UserError(
+        "heave and truth: nothing to compare between gaps, edges and where the truth does not move; expected "
+        "some time in which both tell heave");
   return comparison;
 }
 

@@ -11,7 +11,8 @@ struct AgainstTruthSettings {
 };
 
 // Compares at the truth's instants that lie within the heave series, in no gap of either, and whose truth is
-// known; where the truth marks what is moving, only there. Throws UserError where the two do not overlap.
+// known; where the truth marks what is moving, only there. Throws UserError where nothing is left to compare,
+// and where high_pass_hz is not below half the rate of the truth.
 HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& truth,
                                    const AgainstTruthSettings& settings);
 

@@ -21,6 +21,8 @@ HeaveSeries read_heave_csv(const std::filesystem::path& path) {
     series.utime.push_back(utime);
     series.heave_m.push_back(csv.number_or_nan(1));
     series.heave_sigma_m.push_back(sigma < 0 ? estimator::kUnknown : csv.number_or_nan(sigma));
+    if (series.heave_sigma_m.back() < 0)
+      throw csv.complaint(sigma, "a number of 0 or more, or an empty cell");
     if (moving >= 0) series.moving.push_back(csv.number(moving) != 0);
   }
   if (series.utime.empty())

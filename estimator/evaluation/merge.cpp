@@ -77,6 +77,9 @@ CampaignResults merged(std::span<const fs::path> shards, std::span<const std::st
       throw UserError(fmt::format("{} and {}: calibration differs; expected shards of one campaign",
                                   shards.front().string(), shard.string()));
     for (RunResult& run : part.runs) {
+      if (const fs::path log = shard / "runs" / (run.run + ".lcm"); !fs::exists(log))
+        throw UserError(
+            fmt::format("{}: is not there; expected the log of a run that the results hold", log.string()));
       const auto [at, fresh] = holder.try_emplace({run.run, run.method}, &shard);
       if (!fresh)
         throw UserError(

@@ -91,7 +91,7 @@ class Reader {
     value = name.empty() ? Motion::kUnknown : name == kSea ? Motion::kSea : Motion::kRegular;
   }
   void operator()(const char* key, std::string& value) {
-    const Json& j = at(key);
+    const Json& j = at(key, "a string");
     if (!j.is_string()) throw wrong(key, "a string");
     value = j.get<std::string>();
   }
@@ -102,19 +102,19 @@ class Reader {
     value = text[0];
   }
   void operator()(const char* key, bool& value) {
-    const Json& j = at(key);
+    const Json& j = at(key, "true or false");
     if (!j.is_boolean()) throw wrong(key, "true or false");
     value = j.get<bool>();
   }
   template <std::integral Integer>
   void operator()(const char* key, Integer& value) {
-    const Json& j = at(key);
+    const Json& j = at(key, "a whole number");
     if (!j.is_number_integer()) throw wrong(key, "a whole number");
     value = j.get<Integer>();
   }
   template <class Item>
   void operator()(const char* key, std::vector<Item>& items) {
-    const Json& array = at(key);
+    const Json& array = at(key, "an array");
     if (!array.is_array()) throw wrong(key, "an array");
     items.clear();
     for (const Json& element : array) {
@@ -126,9 +126,10 @@ class Reader {
   void operator()(const char* key, std::vector<JudgedWave>& waves);
 
  private:
-  const Json& at(const char* key) const {
+  const Json& at(const char* key, const char* expected) const {
     const auto found = json_.find(key);
-    if (found == json_.end()) throw UserError(fmt::format("{}: key '{}' is missing", where_, key));
+    if (found == json_.end())
+      throw UserError(fmt::format("{}: key '{}' is missing; expected {}", where_, key, expected));
     return *found;
   }
   UserError wrong(const char* key, const char* expected) const {
@@ -258,7 +259,7 @@ inline void Writer::operator()(const char* key, const JudgedSea& sea) {
 inline void Reader::operator()(const char* key, JudgedSea& sea) {
   sea = {};
   if (!json_.contains(key)) return;
-  Reader reader(at(key), fmt::format("{}, {}", where_, key));
+  Reader reader(json_.at(key), fmt::format("{}, {}", where_, key));
   fields(reader, sea);
 }
 
@@ -273,7 +274,7 @@ inline void Writer::operator()(const char* key, const std::vector<JudgedWave>& w
 }
 
 inline void Reader::operator()(const char* key, std::vector<JudgedWave>& waves) {
-  const Json& columns = at(key);
+  const Json& columns = at(key, "an object of arrays");
   if (!columns.is_object()) throw wrong(key, "an object of arrays");
   std::size_t rows = 0;
   for (const auto& [name, column] : columns.items()) {

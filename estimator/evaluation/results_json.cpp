@@ -56,7 +56,7 @@ class JsonFile {
 
 Json parsed(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file)
+  if (!file || std::filesystem::is_directory(path))
     throw UserError(
         fmt::format("{}: cannot be read; expected the results of a finished campaign", path.string()));
   std::ostringstream text;

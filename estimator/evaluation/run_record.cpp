@@ -104,7 +104,9 @@ RunRecord load_run(const std::filesystem::path& log) {
   record.run = log.stem().string();
   EventLogReader reader(log);
   Loader loader(log, record);
-  for (LogEvent event; reader.next(event);) loader.take(event);
+  bool any = false;
+  for (LogEvent event; reader.next(event); any = true) loader.take(event);
+  if (!any) throw UserError(fmt::format("{}: holds no event; expected the log of a run", log.string()));
   loader.finish();
   return record;
 }

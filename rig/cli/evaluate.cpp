@@ -52,6 +52,16 @@ void make_directory(const std::string& out) {
     throw UserError(fmt::format("--out {}: {}; expected a directory that can be made", out, error.message()));
 }
 
+evaluation::HeaveComparison against_truth(const EvaluateArguments& arguments,
+                                          const evaluation::HeaveSeries& heave) {
+  const evaluation::HeaveSeries truth = evaluation::read_heave_csv(arguments.truth);
+  try {
+    return evaluation::compare_with_truth(heave, truth, arguments.against);
+  } catch (const UserError& error) {
+    throw UserError(fmt::format("{} against {}: {}", arguments.input, arguments.truth, error.what()));
+  }
+}
+
 int evaluate_heave(const EvaluateArguments& arguments) {
   if (arguments.out.empty())
     throw UserError("--out is missing; expected a directory for waves.csv and summary.json");
@@ -66,8 +76,7 @@ int evaluate_heave(const EvaluateArguments& arguments) {
   evaluation::Summary summary = evaluation::summary_of("zero-up-crossing", waves);
   evaluation::take_sea(summary, std::vector{evaluation::sea_of(spectrum)});
   if (!arguments.truth.empty()) {
-    const auto comparison =
-        evaluation::compare_with_truth(heave, evaluation::read_heave_csv(arguments.truth), arguments.against);
+    const auto comparison = against_truth(arguments, heave);
     summary.heave_rms_error_m = comparison.rmse_m();
     summary.heave_rms_error_percent = 100 * comparison.rmse_m() / (4 * comparison.true_std_m());
     summary.heave_gain = comparison.gain();
@@ -174,6 +183,14 @@ evaluation::JudgeSettings judge_settings(const evaluation::RunRecord& record,
   return settings;
 }
 
+// Results are replaced by those of the logs: where a log has gone its run would go too.
+void refuse_to_lose_a_run(const fs::path& directory, const evaluation::CampaignResults& results) {
+  for (const evaluation::RunResult& run : results.runs)
+    if (const fs::path log = directory / "runs" / (run.run + ".lcm"); !fs::exists(log))
+      throw UserError(
+          fmt::format("{}: is not there; expected the log of a run that the results hold", log.string()));
+}
+
 std::string command_of(const EvaluateArguments& arguments) {
   std::string command = "waverig evaluate " + arguments.input;
   for (const std::string& other : arguments.others) command += " --heave " + other;
@@ -195,11 +212,15 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
     throw UserError(fmt::format("{}: no runs/*.lcm; expected the logs of a campaign", arguments.input));
   std::sort(logs.begin(), logs.end());
 
+  refuse_to_lose_a_run(directory, results);
   std::vector<evaluation::RunResult> judged;
   for (const fs::path& log : logs) {
     evaluation::RunRecord record = evaluation::load_run(log);
     for (const auto& [name, heave] : others) add_other_heave(record, name, heave);
-    for (auto& run : evaluation::judge(record, judge_settings(record, results))) {
+    auto runs = evaluation::judge(record, judge_settings(record, results));
+    if (runs.empty())
+      throw UserError(fmt::format("{}: no method to judge in it; expected the log of a run", log.string()));
+    for (auto& run : runs) {
       if (const auto other = others.find(run.method); other != others.end())
         remark(run, file_of(other->second, run.run));
       judged.push_back(std::move(run));

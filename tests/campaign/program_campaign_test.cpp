@@ -94,6 +94,24 @@ TEST(Program, JudgesIntoADirectoryThatIsWholeByItself) {
   EXPECT_EQ(bytes_of(temporary / "other/results.json"), before);
 }
 
+TEST(Program, JudgesNothingAnewWhereTheLogOfARunHasGone) {
+  const TemporaryDirectory temporary;
+  temporary.write("tiny.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep tiny.toml --out done").status, 0);
+  const std::string results = bytes_of(temporary / "done/results.json");
+  const std::string log = "done/runs/T04.00s_H050.0cm_r1.lcm";
+  temporary.write(log, "");
+  const Outcome empty = run(temporary, "evaluate done");
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_NE(empty.err.find(log + ": holds no event; expected the log of a run"), std::string::npos)
+      << empty.err;
+  std::filesystem::rename(temporary / log, temporary / "done/runs/T05.00s_H050.0cm_r1.lcm");
+  const Outcome gone = run(temporary, "evaluate done");
+  EXPECT_EQ(gone.status, 2);
+  EXPECT_NE(gone.err.find(log + ": is not there"), std::string::npos) << gone.err;
+  EXPECT_EQ(bytes_of(temporary / "done/results.json"), results);
+}
+
 // Heave of someone else's program, of the right motion but on another clock, short, or upside down.
 TEST(Program, RemarksOnHeaveThatDoesNotFitTheRun) {
   const TemporaryDirectory temporary;

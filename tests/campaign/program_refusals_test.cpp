@@ -33,6 +33,14 @@ TEST_P(ProgramRefuses, WithExitTwoAndOneLine) {
   temporary.write("truncated.lcm", std::string("\xED\xA1\xDA\x01", 4) + "short");
   temporary.write("heave.csv", "utime,heave_m\n0,1\n0,2\n");
   temporary.write("empty.toml", "");
+  temporary.write("negative.csv", "utime,heave_m,heave_sigma_m\n0,1,-1\n");
+  std::string seas = "utime,heave_m\n", late = seas;
+  for (int row = 0; row < 300; ++row) {
+    seas += std::to_string(100000 * row) + "," + std::to_string(row % 7) + "\n";
+    late += std::to_string(100000 * row + 1000000000) + "," + std::to_string(row % 7) + "\n";
+  }
+  temporary.write("seas.csv", seas);
+  temporary.write("late.csv", late);
   std::string milliseconds = "utime,ax,ay,az,gx,gy,gz\n", seconds = "utime,heave_m\n";
   for (int row = 0; row < 300; ++row) {
     milliseconds += std::to_string(10 * row) + ",0,0," + std::to_string(-9.8 + 0.01 * (row % 7)) + ",0,0,0\n";
@@ -128,6 +136,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"CommaInAName", "evaluate . --heave a,b=. --out out", "--heave a,b=.: name 'a,b'"},
         BadCall{"NameTwice", "evaluate . --heave a=. --heave a=. --out out",
                 "--heave a=.: 'a' is given twice"},
+        BadCall{"SigmaBelowZero", "evaluate negative.csv --out out",
+                "negative.csv, line 2, column heave_sigma_m: '-1'; expected a number of 0 or more"},
+        BadCall{"TruthOfAnotherTime", "evaluate seas.csv --truth late.csv --out out",
+                "seas.csv against late.csv: heave and truth: they do not overlap"},
         BadCall{"TimeStandsStill", "evaluate heave.csv --out out", "heave.csv, line 3, column utime"}),
     [](const auto& instance) { return instance.param.name; });
 

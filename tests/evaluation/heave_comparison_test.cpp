@@ -149,5 +149,15 @@ TEST(HeaveAgainstTruth, RefusesSeriesThatDoNotMeet) {
   EXPECT_THROW(compare_with_truth(late, series(100, 10, 0, 0), {}), UserError);
 }
 
+TEST(HeaveAgainstTruth, RefusesWhereNothingIsLeftToCompare) {
+  const HeaveSeries heave = series(100, 10, 0, 0);
+  HeaveSeries still = heave;
+  still.moving.assign(still.utime.size(), false);
+  EXPECT_THROW(compare_with_truth(heave, still, {}), UserError);
+  EXPECT_THROW(compare_with_truth(heave, heave, {.edge_s = 6}), UserError);
+  EXPECT_THROW(compare_with_truth(heave, heave, {.high_pass_hz = 50}), UserError) << "nothing passes";
+  EXPECT_NO_THROW(compare_with_truth(heave, heave, {.high_pass_hz = 49}));
+}
+
 }  // namespace
 }  // namespace waverig::evaluation

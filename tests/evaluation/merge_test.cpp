@@ -107,6 +107,13 @@ TEST_F(Merge, RefusesARunThatTwoShardsHold) {
   EXPECT_NE(said.find(two.string()), std::string::npos) << said;
 }
 
+TEST_F(Merge, RefusesAShardWithoutTheLogOfARunNamingIt) {
+  const auto one = shard("one", {run("a", 6, 0)}), two = shard("two", {run("b", 6, 1)});
+  fs::remove(two / "runs/b.lcm");
+  const std::string said = refusal({one, two});
+  EXPECT_NE(said.find((two / "runs/b.lcm").string()), std::string::npos) << said;
+}
+
 TEST_F(Merge, RefusesTooFewShards) {
   expected = {"a", "b", "c"};
   const auto one = shard("one", {run("a", 6, 0)}), two = shard("two", {run("b", 6, 1)});

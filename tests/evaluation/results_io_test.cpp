@@ -205,7 +205,7 @@ TEST(Results, NameTheKeyThatIsWrong) {
       << complaint(bad);
   bad = good;
   bad["cells"][0].erase("method");
-  EXPECT_NE(complaint(bad).find("cells[0]: key 'method' is missing"), std::string::npos) << complaint(bad);
+  EXPECT_NE(complaint(bad).find("cells[0]: key 'method' is missing; expected a string"), std::string::npos) << complaint(bad);
   bad = good;
   bad["runs"][0]["motion"] = "tide";
   EXPECT_NE(complaint(bad).find("runs[0]: key 'motion' is \"tide\"; expected \"regular\" or \"sea\""), std::string::npos)
