@@ -1,12 +1,16 @@
 #include "render/png.h"
 
 #include <libdeflate.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <stdexcept>
+#include <string>
 #include <string_view>
+#include <system_error>
 
 #include "lcmtypes/error.h"
 
@@ -88,10 +92,18 @@ const std::vector<std::uint8_t>& PngEncoder::encode(const Image& image, const Pn
 }
 
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size) {
-  std::ofstream file(path, std::ios::binary);
+  const std::filesystem::path part = path.string() + '.' + std::to_string(::getpid()) + ".partial";
+  std::ofstream file(part, std::ios::binary);
+  if (!file) throw UserError(path.string() + ": cannot be written");
   file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
   file.close();
-  if (!file) throw UserError(path.string() + ": cannot be written");
+  std::error_code error;
+  if (file) std::filesystem::rename(part, path, error);
+  if (file && !error) return;
+  std::error_code ignored;
+  std::filesystem::remove(part, ignored);
+  if (error) throw UserError(path.string() + ": cannot be written: " + error.message());
+  throw std::runtime_error(path.string() + ": not everything could be written");
 }
 
 }  // namespace waverig::render

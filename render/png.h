@@ -32,7 +32,8 @@ class PngEncoder {
   std::vector<std::uint8_t> rows_, compressed_, file_;
 };
 
-// Throws UserError where the file cannot be written.
+// The file is there whole or not at all: one of before stands until then. Throws UserError where the place
+// cannot be written, std::runtime_error where the disk did not take all.
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size);
 
 }  // namespace waverig::render

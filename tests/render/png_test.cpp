@@ -1,6 +1,12 @@
 #include "render/png.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
 
 #include "lcmtypes/error.h"
 #include "motion/kinematics/random.h"
@@ -55,6 +61,25 @@ TEST(Png, SaysWhichFileCannotBeWritten) {
   } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("/nowhere/at/all.png"), std::string::npos);
   }
+}
+
+TEST(Png, KeepsTheFileOfBeforeWhereTheNextDoesNotFit) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.png";
+  write_file(path, "before", 6);
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const struct rlimit small { 1000, before.rlim_max };
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string large(100000, 'x');
+  EXPECT_THROW(write_file(path, large.data(), large.size()), std::runtime_error);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(std::filesystem::file_size(path), 6U);
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& file : std::filesystem::directory_iterator(folder.path())) ++files;
+  EXPECT_EQ(files, 1U);
 }
 
 }  // namespace
