@@ -339,6 +339,16 @@ TEST(Harmonic, HeaveIsTheTruthWithinTheNoiseOfAWave) {
     n += 1;
   }
   EXPECT_LT(std::sqrt(squares / n), 0.003);
+
+  // What is stated of heave is half of what is stated of the wave's height, all of it.
+  const Wave& wave = found.waves.at(10);
+  const auto inside = std::find_if(found.heaves.begin(), found.heaves.end(), [&](const HeaveSample& h) {
+    return h.utime > wave.start_utime + std::llround(0.5e6 * wave.period_s);
+  });
+  EXPECT_NEAR(inside->heave_sigma_m,
+              0.5 * std::hypot(std::hypot(wave.noise_sigma_m, wave.calibration_sigma_m), wave.tilt_sigma_m,
+                               wave.frequency_sigma_m),
+              1e-12);
 }
 
 // Where one wave ends and the next begins each has by its own fit.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "lcmtypes/flags.h"
@@ -196,6 +197,15 @@ TEST_F(SampleGuardTest, FlagsSaturationAndKeepsTheFlagsOfTheSample) {
   const GuardVerdict verdict = guard.check(s);
   EXPECT_TRUE(verdict.usable);
   EXPECT_EQ(verdict.flags, flag::kSaturation | flag::kUncalibrated);
+
+  settings = {};
+  settings.gyro_limit_radps = 3.4;
+  SampleGuard of_gyro(settings);
+  for (const double rate : {3.3, -3.4, 3.3, 3.4}) {
+    s = sample(s.seq + 1);
+    s.w_NB_B.y() = rate;
+    EXPECT_EQ((of_gyro.check(s).flags & flag::kSaturation) != 0, std::abs(rate) == 3.4) << rate;
+  }
 }
 
 }  // namespace

@@ -48,6 +48,31 @@ TEST(HeaveSpectrum, HoldsTheVarianceOfASineAtItsFrequency) {
   EXPECT_NEAR(spectrum.resolution_hz, 0.005, 1e-9);
 }
 
+// 249 s in blocks of 100: what happens in its last 45 s lies in one of them.
+TEST(HeaveSpectrum, SeesARecordToItsEnd) {
+  HeaveSeries s = series({{0.5, 0.1, 0}}, 249, 4);
+  for (std::size_t i = 204 * 4; i < s.heave_m.size(); ++i)
+    s.heave_m[i] = 0.5 * std::cos(kTwoPi * 0.25 * static_cast<double>(i) / 4);
+  const HeaveSpectrum spectrum = spectrum_of(s.utime, s.heave_m, {.block_s = 100});
+  double fast = 0, all = 0;
+  for (std::size_t k = 0; k < spectrum.frequency_hz.size(); ++k) {
+    all += spectrum.density_m2_per_hz[k];
+    if (std::abs(spectrum.frequency_hz[k] - 0.25) < 0.05) fast += spectrum.density_m2_per_hz[k];
+  }
+  EXPECT_GT(fast / all, 0.05);
+  EXPECT_LT(fast / all, 45.0 / 249);  // ends weigh less
+}
+
+// Six seconds of a wave of twelve look like a slope.
+TEST(HeaveSpectrum, PiecesShorterThanTheLongestWaveTakeNothingOffTheHeight) {
+  HeaveSeries s = series({{0.8, 1 / 12.0, 0.3}}, 1200, 4);
+  for (std::size_t i = 600 * 4; i < s.heave_m.size(); ++i)
+    if (i % 40 >= 24) s.heave_m[i] = std::numeric_limits<double>::quiet_NaN();  // six seconds of every ten are known
+  const estimator::SeaState sea = sea_of(spectrum_of(s.utime, s.heave_m));
+  EXPECT_NEAR(sea.hm0_m, 4 * 0.8 / std::sqrt(2), 0.01);
+  EXPECT_TRUE(sea.flags & flag::kGap);
+}
+
 // A sea of known moments: 400 components, random phases; 2 % is what twenty minutes of such a sea scatter by.
 TEST(HeaveSpectrum, TellsTheMomentsOfASea) {
   RandomStream random(7, "sea");

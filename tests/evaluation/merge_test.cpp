@@ -44,6 +44,7 @@ class Merge : public ::testing::Test {
     results.name = "c";
     results.version = version;
     results.seed = seed;
+    results.calibration_json = calibration_json;
     results.complete = complete;
     results.runs = std::move(runs);
     results.cells = cells_of(results.runs);
@@ -62,7 +63,7 @@ class Merge : public ::testing::Test {
   }
 
   Scratch scratch;
-  std::string version = "1";
+  std::string version = "1", calibration_json;
   std::uint64_t seed = 1;
   bool complete = true;
   std::vector<std::string> expected;
@@ -79,6 +80,15 @@ TEST_F(Merge, GivesWhatOneMachineWouldHaveGiven) {
     EXPECT_EQ(Scratch::read(scratch.path() / "out" / "runs" / (std::string(log) + ".lcm")),
               std::string("log of ") + log);
   EXPECT_EQ(Scratch::read(scratch.path() / "out" / "campaign.toml"), "seed = 1\n");
+}
+
+TEST_F(Merge, RefusesShardsOfAnotherCalibration) {
+  calibration_json = "{}";
+  const auto one = shard("one", {run("a", 6, 0)});
+  calibration_json = "{\"unit\": 2}";
+  const auto two = shard("two", {run("b", 6, 1)});
+  const std::string said = refusal({one, two});
+  EXPECT_NE(said.find("calibration differs"), std::string::npos) << said;
 }
 
 TEST_F(Merge, RefusesOtherSettingsNamingTheLine) {

@@ -331,6 +331,22 @@ TEST(RunJudge, JudgesARecordLikeTheMessagesThemselves) {
   EXPECT_EQ(a.excluded_waves, b.excluded_waves);
 }
 
+TEST(TruthSeries, LeavesOutWhatIsNoNumberAndWhatComesLate) {
+  TruthSeries truth;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (std::int64_t t = 0; t <= 10; ++t) {
+    if (t == 5) {
+      truth.add(t * kSecond, nan, 1);
+      truth.add(t * kSecond, 5, nan);
+      truth.add(2 * kSecond, 100, 1);
+    } else {
+      truth.add(t * kSecond, static_cast<double>(t), 1);
+    }
+  }
+  EXPECT_EQ(truth.size(), 10u);
+  for (double t = 0; t <= 10; t += 0.25) EXPECT_NEAR(truth.at(std::llround(t * 1e6)).heave_m, t, 1e-9);
+}
+
 TEST(TruthSeries, FindsAnExtremeBetweenItsSamples) {
   TruthSeries series;
   for (int i = 0; i <= 40; ++i) {  // 4 Hz only
