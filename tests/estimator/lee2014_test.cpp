@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "lcmtypes/flags.h"
 #include "tests/estimator/collector.h"
 #include "tests/estimator/synthetic_waves.h"
 
@@ -158,6 +161,49 @@ TEST(Lee2014, StatesTheHeightThatAnUnknownBiasMayAdd) {
     EXPECT_LT(found.waves.back().calibration_sigma_m, 0.05);
   }
   EXPECT_GE(inside, 35) << "of " << kUnits << ", k = 2";
+}
+
+TEST(Lee2014, TakesNoRestBetweenTwoRunsForAWave) {
+  SyntheticRecord record = testing::synthesize(waves_of(6, 1), SensorErrors{}, 1);
+  SyntheticWaves again = waves_of(6, 1);
+  again.rest_s = 60;
+  const std::int64_t end = record.samples.back().utime + 10'000;
+  const SyntheticRecord second = testing::synthesize(again, SensorErrors{}, 2);
+  for (ImuSample sample : second.samples) {
+    sample.utime += end - second.samples.front().utime;
+    record.samples.push_back(sample);
+  }
+  Lee2014 method{MethodSettings{}};
+  const Collector found = testing::run(method, record.samples);
+  EXPECT_GT(found.waves.size(), 50u);
+  for (const Wave& wave : found.waves) EXPECT_LT(wave.period_s, 25.1);
+}
+
+TEST(Lee2014, AWaveCarriesWhatItsSamplesSuffered) {
+  SyntheticRecord record = testing::synthesize(waves_of(6, 1), SensorErrors{}, 1);
+  ImuSample& bad = record.samples[9000];
+  bad.flags |= flag::kSaturation;
+  const std::int64_t when = bad.utime;
+  Lee2014 method{MethodSettings{}};
+  int flagged = 0;
+  for (const Wave& wave : testing::run(method, record.samples).waves) {
+    const bool holds = wave.start_utime < when && when < wave.start_utime + std::llround(1e6 * wave.period_s);
+    EXPECT_EQ((wave.flags & flag::kSaturation) != 0, holds) << wave.start_utime;
+    flagged += holds;
+  }
+  EXPECT_EQ(flagged, 1);
+}
+
+// Of a scale that nobody knows, one to one: with the bias, which adds b T^2 / pi^2.
+TEST(Lee2014, StatesTheHeightThatAnUnknownScaleMayAdd) {
+  MethodSettings settings;
+  settings.sensor.accel_bias_sigma_mps2 = 0;
+  settings.sensor.accel_scale_sigma = 0;
+  settings.sensor.accel_slope_sigma = 0.05;
+  const SyntheticRecord record = testing::synthesize(waves_of(8, 1), no_errors(), 1);
+  Lee2014 method{settings};
+  const Wave wave = testing::run(method, record.samples).waves.back();
+  EXPECT_NEAR(wave.calibration_sigma_m, 0.05 * wave.height_m, 1e-9);
 }
 
 }  // namespace

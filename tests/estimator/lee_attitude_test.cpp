@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "motion/kinematics/random.h"
 
 namespace waverig::estimator {
@@ -59,6 +62,19 @@ TEST(LeeAttitude, FollowsASlowTurnOfTheFrame) {
     worst = std::max({worst, std::abs(found.roll_rad - e.roll_rad), std::abs(found.pitch_rad - e.pitch_rad)});
   }
   EXPECT_LT(worst, 1e-4);
+}
+
+// A quaternion and its opposite are one attitude: over half a turn what is measured changes its sign.
+TEST(LeeAttitude, StaysLevelHoweverOftenTheBodyTurnsRound) {
+  LeeAttitude attitude({});
+  const double dt = 0.01, rate = 0.5;
+  for (int i = 0; i < 5000; ++i) {
+    attitude.update(Vector3d(0, 0, -kG), Vector3d(0, 0, rate), i == 0 ? 0 : dt);
+    const Euler found = euler_of(attitude.q_NB());
+    ASSERT_NEAR(found.roll_rad, 0, 1e-9) << i;
+    ASSERT_NEAR(found.pitch_rad, 0, 1e-9) << i;
+    ASSERT_NEAR(std::remainder(found.yaw_rad - rate * i * dt, 2 * std::numbers::pi), 0, 1e-3) << i;
+  }
 }
 
 TEST(LeeAttitude, LeansByGyroBiasTimesItsTimeConstant) {
