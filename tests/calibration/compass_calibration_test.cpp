@@ -16,10 +16,11 @@ struct Turned {
   std::vector<Vector3d> raw_uT, f_B;
 };
 
-Turned turned(const Matrix3d& soft_iron, const Vector3d& hard_iron_uT, double noise_uT) {
-  RandomStream random(2, "turned");
+Turned turned(const Matrix3d& soft_iron, const Vector3d& hard_iron_uT, double noise_uT, int readings = 2000,
+              std::uint64_t seed = 2) {
+  RandomStream random(seed, "turned");
   Turned result;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < readings; ++i) {
     const Quaterniond q_NB =
         Quaterniond(random.gaussian(), random.gaussian(), random.gaussian(), random.gaussian()).normalized();
     const Vector3d m_N = kField_uT * Vector3d(std::cos(kDip), 0, std::sin(kDip));
@@ -43,6 +44,23 @@ TEST(CompassCalibration, EllipsoidFindsFieldDipAndOffsetWithinWhatItLeavesOpen) 
   EXPECT_NEAR(c.dip_rad, kDip, 0.05 * kDegree);
   EXPECT_LT((c.correction.offset - Vector3d(12, -7, 20)).norm(), 5 * c.left.hard_iron_sigma * kField_uT);
   EXPECT_NEAR(c.residual.relative_std, 0.1 / kField_uT, 0.2 * 0.1 / kField_uT);
+}
+
+// Both are relative to the field: what is left of the offset, and of the gain's six elements.
+TEST(CompassCalibration, EllipsoidStatesWhatItLeavesOpenAsManySeedsFindIt) {
+  const Vector3d hard_iron_uT(12, -7, 20);
+  double offset = 0, gain = 0;
+  constexpr int kSeeds = 40;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Turned t = turned(Matrix3d::Identity(), hard_iron_uT, 0.3, 100, seed);
+    const CompassCalibration c = ellipsoid_compass(t.raw_uT, t.f_B);
+    const Vector3d off = (c.correction.offset - hard_iron_uT) / kField_uT;
+    const Matrix3d uneven = kField_uT * c.correction.gain - Matrix3d::Identity();
+    offset += off.squaredNorm() / 3 / std::pow(c.left.hard_iron_sigma, 2) / kSeeds;
+    gain += uneven.diagonal().squaredNorm() / 3 / std::pow(c.left.soft_iron_sigma, 2) / kSeeds;
+  }
+  EXPECT_NEAR(std::sqrt(offset), 1, 0.3);
+  EXPECT_NEAR(std::sqrt(gain), 1, 0.4);
 }
 
 TEST(CompassCalibration, MaxMinSaysThatItLeavesTheSoftIron) {

@@ -66,6 +66,15 @@ TEST(RotationFit, RecoversTheUnitFromACleanRecord) {
   EXPECT_GT(fit.coverage, 0.3);
 }
 
+// Six degrees a second, seen in the ten seconds of rest, would turn each window's frame by as much.
+TEST(RotationFit, TakesTheGyroscopesZeroOff) {
+  const Vector3d offset_radps(0.1, -0.1, 0.05);
+  const RotationFit fit = fit_rotation(turned_by_hand(200, 0, 0, offset_radps, 1), kG);
+  EXPECT_LT((fit.gyroscope.offset_radps - offset_radps).norm(), 2e-4);
+  EXPECT_LT((fit.calibration.M - some_unit().M).cwiseAbs().maxCoeff(), 2e-4);
+  EXPECT_LT((fit.calibration.b_mps2 - some_unit().b_mps2).norm(), 2e-3);
+}
+
 TEST(RotationFit, RecoversTheUnitWithinItsUncertaintyDespiteTheHand) {
   double chi = 0;
   constexpr int kRuns = 12;
@@ -93,6 +102,12 @@ TEST(RotationFit, LeavesGapsOut) {
   samples.erase(samples.begin() + 6000, samples.begin() + 9000);
   const RotationFit fit = fit_rotation(samples, kG);
   EXPECT_LT((fit.calibration.M - some_unit().M).cwiseAbs().maxCoeff(), 1e-4);
+
+  // And those shorter than a window, in which the unit turned unseen.
+  std::vector<ImuSample> holed;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (i % 700 < 580) holed.push_back(samples[i]);
+  EXPECT_LT((fit_rotation(holed, kG).calibration.M - some_unit().M).cwiseAbs().maxCoeff(), 1e-4);
 }
 
 std::vector<ImuSample> recording(const std::string& file) {
