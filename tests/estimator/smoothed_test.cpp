@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "estimator/method.h"
 #include "lcmtypes/flags.h"
 #include "tests/estimator/collector.h"
 #include "tests/estimator/sea_record.h"
@@ -124,6 +127,30 @@ TEST(Smoothed, ALostSampleEndsNoWave) {
   const Collector whole = run_smoothed(record.samples), lost = run_smoothed(samples);
   EXPECT_EQ(lost.waves.size(), whole.waves.size());
   EXPECT_TRUE(lost.waves[3].flags & flag::kGap);
+}
+
+TEST(Smoothed, TheSampleAfterOneThatWasLeftOutSaysWhy) {
+  SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 1, .duration_s = 300}, 3);
+  record.samples[9000].f_B.x() = std::nan("");
+  const std::int64_t next = record.samples[9001].seq;
+  for (const char* name : {"smoothed", "realtime"}) {
+    const auto method = estimator::make_method(name, {});
+    for (const estimator::HeaveSample& h : run(*method, record.samples).heaves)
+      EXPECT_EQ((h.flags & flag::kRange) != 0, h.seq == next) << name << ' ' << h.seq;
+  }
+}
+
+// A scale that is a twentieth wrong makes all of the sea a twentieth wrong.
+TEST(Smoothed, StatesTheSensorsScaleAsPartOfHeavesSigma) {
+  const SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 2, .duration_s = 600}, 3);
+  for (const char* name : {"smoothed", "realtime"}) {
+    const auto variance_with = [&](double slope_sigma) {
+      estimator::MethodSettings settings;
+      settings.sensor.accel_slope_sigma = slope_sigma;
+      return square(run(*estimator::make_method(name, settings), record.samples).heaves.back().heave_sigma_m);
+    };
+    EXPECT_NEAR(variance_with(0.05) - variance_with(0), square(0.05 * 2 / 4.0), 0.3 * square(0.05 * 2 / 4.0)) << name;
+  }
 }
 
 // Two samples a microsecond apart differ by their noise, which is no slope.
