@@ -200,6 +200,35 @@ TEST(Runner, StoppedByTheUserItEndsSafely) {
   EXPECT_TRUE(run.safe());
 }
 
+// Asked whether all is connected: by a user at the terminal, or as the sequence says where there is none.
+TEST(Runner, APromptThatIsNotAnsweredWithYesEndsTheRun) {
+  OpenRun asked, unattended({}, {{"unattended = \"continue\"", "unattended = \"abort\""}});
+  RunnerHooks hooks;
+  hooks.prompt = [](const PlannedStep&) { return false; };
+  for (OpenRun* run : {&asked, &unattended}) {
+    Runner runner(run->sequence, run->reactor, run->store, run == &asked ? hooks : RunnerHooks{});
+    EXPECT_NE(runner.run(false).find("answered with no"), std::string::npos);
+    run->reactor.sleep_until(run->reactor.now() + 5'000'000);
+    EXPECT_TRUE(run->safe());
+    EXPECT_TRUE(run->store.recordings().empty());
+  }
+}
+
+TEST(Runner, AUserWhoStopsAgainAndAgainDoesNotStopTheSafeEnd) {
+  OpenRun run;
+  std::atomic<bool> stop{false};
+  Reactor reactor(&run.time, &stop);
+  RunnerHooks hooks;
+  int steps = 0;
+  hooks.progress = [&](const Progress&) { stop = ++steps >= 60; };   // nobody takes it back
+  Runner runner(run.sequence, reactor, run.store, hooks);
+  EXPECT_EQ(runner.run(false), "stopped by the user");
+  reactor.sleep_until(reactor.now() + 5'000'000);
+  EXPECT_TRUE(run.safe());
+  for (const StepRow& row : run.store.steps()) EXPECT_NE(row.outcome, StepOutcome::kFailed) << row.what << ": " << row.message;
+  EXPECT_EQ(run.store.steps().back().outcome, StepOutcome::kMadeSafe);
+}
+
 TEST(Runner, StoppedAtAnyMomentItEndsSafely) {
   RandomStream random(5, "stop");
   for (int i = 0; i < 10; ++i) {
