@@ -32,9 +32,10 @@ struct OpenRun {
   Reactor reactor{&time};
   Store store;
 
-  explicit OpenRun(std::vector<Fault> faults = {}, const ShortSequence::Changes& changes = {}, const std::string& name = "scale_factor.toml")
+  explicit OpenRun(std::vector<Fault> faults = {}, const ShortSequence::Changes& changes = {}, const std::string& name = "scale_factor.toml",
+                   const ShortSequence::Changes& of_laboratory = {})
       : files(name, changes),
-        sequence(load_sequence(files.file())),
+        sequence((files.change("laboratory.toml", of_laboratory), load_sequence(files.file()))),
         laboratory(laboratory_with(std::move(faults)), sequence.laboratory, &time, time.now()),
         store(Store::create((std::filesystem::create_directories(files.out()), store_file(files.out())),
                             {sequence.title, sequence.procedure, "test", sequence.fingerprints, {}, time.now(), true, "running", {}})) {
@@ -166,6 +167,14 @@ TEST(Runner, AnOutOfRangeReadingEndsTheRunBeforeAnythingElse) {
   const std::string outcome = run.run();
   EXPECT_NE(outcome.find("supply: out of range: voltage = 99 V"), std::string::npos) << outcome;
   EXPECT_TRUE(run.store.recordings().empty());
+}
+
+// As if the calibrator had not taken the level: what it says of it is something else.
+TEST(Runner, ASettingThatReadsBackDifferentlyEndsTheRun) {
+  OpenRun run({}, {}, "scale_factor.toml", {{"query = \"SOUR:CURR?\"", "query = \"SOUR:CURR:RANG?\""}});
+  const std::string outcome = run.run();
+  EXPECT_NE(outcome.find("current reads back"), std::string::npos) << outcome;
+  EXPECT_TRUE(run.safe());
 }
 
 TEST(Runner, AnInstrumentsErrorQueueIsHeard) {
