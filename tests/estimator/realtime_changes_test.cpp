@@ -219,6 +219,16 @@ TEST(Realtime, BridgesShortGapsAndRecoversFromLongOnes) {
   EXPECT_TRUE(out.heaves[after].flags & flag::kGap);
   EXPECT_LT(rms_over_hm0(out.heaves, record, kSettled, after), 0.03);
   EXPECT_LT(rms_over_hm0(out.heaves, record, after + 12000, out.heaves.size()), 0.03);
+  // What settles says so, at the start and after the long gap, for a minute; no wave reaches over that gap.
+  for (const std::size_t from : {std::size_t{0}, after}) {
+    for (std::size_t i = from; i < from + 5900; ++i) ASSERT_TRUE(out.heaves[i].flags & flag::kSettling) << i;
+    EXPECT_FALSE(out.heaves[from + 12000].flags & flag::kSettling);
+  }
+  const std::int64_t gap_begin = out.heaves[after - 1].utime, gap_end = out.heaves[after].utime;
+  EXPECT_GT(out.waves.size(), 100u);
+  for (const auto& wave : out.waves)
+    EXPECT_FALSE(wave.start_utime < gap_begin && wave.start_utime + std::llround(1e6 * wave.period_s) > gap_end)
+        << wave.period_s;
 }
 
 // While nothing is seen a leaning body turns on.
