@@ -90,6 +90,15 @@ TEST(RotationFit, RecoversTheUnitWithinItsUncertaintyDespiteTheHand) {
   EXPECT_LT(chi, 3);
 }
 
+TEST(RotationFit, AFewKnocksHardlyBendIt) {
+  auto samples = turned_by_hand(200, 0, 0, Vector3d::Zero(), 1);
+  for (std::size_t begin = 2000; begin < samples.size(); begin += 3000)
+    for (std::size_t i = begin; i < begin + 100; ++i) samples[i].f_B += Vector3d(4, 3, 0);
+  const RotationFit fit = fit_rotation(samples, kG);
+  EXPECT_LT((fit.calibration.M - some_unit().M).cwiseAbs().maxCoeff(), 2e-3);
+  EXPECT_LT((fit.calibration.b_mps2 - some_unit().b_mps2).norm(), 0.02);
+}
+
 TEST(RotationFit, RefusesARecordThatWasNotTurned) {
   auto samples = turned_by_hand(200, 0, 0.01, Vector3d::Zero(), 1);
   for (auto& s : samples) s.f_B = Vector3d(0, 0, -kG);

@@ -64,6 +64,23 @@ DirectionalSea analysed(const std::function<BodyMotion(double)>& motion, Present
   return analysis.finish();
 }
 
+// The bins' mean takes (sin x / x)^2 off a wave of two seconds, five percent; it is given back.
+TEST(DirectionalAnalysis, TellsTheHeightOfShortWavesToo) {
+  for (const double period_s : {2.0, 4.0, 10.0}) {
+    const DirectionalSea sea =
+        analysed([&](double t) { return regular_wave(t, period_s, 0.2, 1); }, Presenter{}, 300);
+    EXPECT_NEAR(sea.hm0_m, 4 * 0.1 / std::sqrt(2), 0.02 * 4 * 0.1 / std::sqrt(2)) << period_s;
+  }
+}
+
+TEST(DirectionalAnalysis, AGapOfYearsTakesNeitherTimeNorMemory) {
+  DirectionalAnalysis analysis(DirectionalSettings{});
+  Presenter presenter;
+  for (const double later_s : {0.0, 1e12})  // thirty thousand years
+    for (int i = 0; i < 15000; ++i) analysis.add(presenter(regular_wave(later_s + 0.02 * i, 8, 1, 1)));
+  EXPECT_LT(off_deg(analysis.finish().mean_direction_rad, 1), 0.1);
+}
+
 TEST(DirectionalAnalysis, TellsWhereARegularWaveComesFrom) {
   for (const double from_deg : {0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0}) {
     const double from = from_deg * kDegree;

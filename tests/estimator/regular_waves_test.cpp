@@ -105,6 +105,23 @@ TEST(RegularWaves, SayWhenTheyHardlyReachOutOfTheNoise) {
   EXPECT_GT(clear, 10);
 }
 
+// A wave whose form is not a harmonic's is no steady one, whatever its length.
+TEST(RegularWaves, OneOfAnotherFormIsFlagged) {
+  const double begin_s = 15 * kPeriod_s;  // from an up-crossing of heave on
+  const auto waves = waves_of(0.5, 0.01, 180, 1, [&](double t) {
+    return t > begin_s && t < begin_s + kPeriod_s ? 0.15 * std::sin(3 * kOmega * t) : 0.0;
+  });
+  int flagged = 0;
+  for (const RegularWave& wave : waves) {
+    const bool its_form = std::abs(wave.begin_s() - begin_s) < 1;
+    if (!its_form && std::abs(wave.begin_s() - begin_s) < 1.5 * kPeriod_s) continue;  // its neighbours may be
+    if (wave.begin_s() < 2 * kPeriod_s || wave.end_s() > 178 - kPeriod_s) continue;
+    EXPECT_EQ((wave.flags & flag::kSettling) != 0, its_form) << wave.begin_s();
+    flagged += its_form;
+  }
+  EXPECT_EQ(flagged, 1);
+}
+
 TEST(RegularWaves, AKnockSpeaksForTheNoiseOfItsOwnWaveAlone) {
   RandomStream knock(1, "knock");
   const auto knocked =
