@@ -42,6 +42,7 @@ class Output {
   virtual void heave(const HeaveSample&) {}
   virtual void wave(const Wave&) {}
   virtual void sea(const SeaState&) {}
+  virtual void offset_change(const OffsetChange&) {}
 };
 
 class Method {

@@ -56,4 +56,11 @@ struct SeaState {
   std::int32_t flags = 0;
 };
 
+// The vertical accelerometer's offset changed at once: the sensor was knocked or slipped. Heave is told without it.
+struct OffsetChange {
+  std::int64_t utime = 0;
+  double mps2 = 0;     // by so much the vertical acceleration, up, reads larger from then on
+  double sigma_s = 0;  // standard uncertainty of when
+};
+
 }  // namespace waverig::estimator

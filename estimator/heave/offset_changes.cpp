@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "estimator/types.h"
-
 namespace waverig::estimator {
 namespace {
 

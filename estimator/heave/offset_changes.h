@@ -12,14 +12,9 @@
 #include <vector>
 
 #include "estimator/heave/path_integrator.h"
+#include "estimator/types.h"
 
 namespace waverig::estimator {
-
-struct OffsetChange {
-  std::int64_t utime = 0;
-  double mps2 = 0;     // by so much the vertical acceleration, up, reads larger from then on
-  double sigma_s = 0;  // standard uncertainty of when
-};
 
 // Of a piece without a gap that begins at first_utime; in order of time. Changes below 2.5 mg are left to the
 // drift, as are those within a minute of its ends.

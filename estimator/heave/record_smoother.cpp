@@ -174,6 +174,7 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
 
 std::vector<Wave> tell(const Record& record, const SmoothedRecord& smoothed, const SensorKnowledge& sensor,
                        Output& output) {
+  for (const OffsetChange& change : smoothed.offset_changes) output.offset_change(change);
   std::vector<Wave> waves;
   WaveCounter counter(sensor);
   auto piece = record.pieces().begin();

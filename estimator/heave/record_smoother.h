@@ -36,7 +36,7 @@ struct SmoothedRecord {
 
 SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor);
 
-// Gives every heave, and each wave as it ends; the waves are the answer, too.
+// Gives the changes of the offset, every heave, and each wave as it ends; the waves are the answer, too.
 std::vector<Wave> tell(const Record& record, const SmoothedRecord& smoothed, const SensorKnowledge& sensor,
                        Output& output);
 

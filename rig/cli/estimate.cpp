@@ -94,6 +94,7 @@ class Collector : public estimator::Output {
   }
   void wave(const estimator::Wave& wave) override { waves_.push_back(wave); }
   void sea(const estimator::SeaState& sea) override { seas_.push_back(sea); }
+  void offset_change(const estimator::OffsetChange& change) override { offset_changes_.push_back(change); }
 
   void flush() { writer_.flush(); }
   void close() { writer_.close(); }
@@ -105,6 +106,7 @@ class Collector : public estimator::Output {
   }
   const evaluation::HeaveSeries& heave_series() const { return series_; }
   const std::vector<estimator::SeaState>& seas() const { return seas_; }
+  const std::vector<estimator::OffsetChange>& offset_changes() const { return offset_changes_; }
   std::int32_t flags() const { return flags_; }
 
  private:
@@ -112,6 +114,7 @@ class Collector : public estimator::Output {
   evaluation::HeaveSeries series_;
   std::vector<estimator::Wave> waves_;
   std::vector<estimator::SeaState> seas_;
+  std::vector<estimator::OffsetChange> offset_changes_;
   std::int32_t flags_ = 0;
 };
 
@@ -154,10 +157,13 @@ struct Record {
 
 // The figures, by whom those of the sea state are, and what all was made of.
 std::string summary_json(const evaluation::Summary& summary, const EstimateArguments& arguments,
-                         const Record& record) {
+                         const Record& record, const std::vector<estimator::OffsetChange>& offset_changes) {
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(evaluation::to_json(summary));
   if (std::isfinite(summary.hm0_m))
     json["sea_state_method"] = std::isfinite(summary.tm02_s) ? "spectral" : "directional";
+  for (const estimator::OffsetChange& change : offset_changes)
+    json["offset_changes"].push_back(
+        {{"utime", change.utime}, {"sigma_s", change.sigma_s}, {"mps2", change.mps2}});
   nlohmann::ordered_json& made_of = json["provenance"];
   made_of["version"] = kVersion;
   const auto put_file = [&](const std::string& key, const std::string& path) {
@@ -229,7 +235,7 @@ int estimate(const EstimateArguments& arguments) {
   std::vector<estimator::SeaState> seas = sea_states.finish();
   seas.insert(seas.end(), collector.seas().begin(), collector.seas().end());
   evaluation::take_sea(summary, seas);
-  const std::string json = summary_json(summary, arguments, record);
+  const std::string json = summary_json(summary, arguments, record, collector.offset_changes());
   end_if_told();
   evaluation::AtomicFile waves_file(out / "waves.csv"), summary_file(out / "summary.json");
   waves_file.write(evaluation::waves_csv(waves));
@@ -253,6 +259,12 @@ int estimate(const EstimateArguments& arguments) {
   summary_file.commit();
   if (const std::string words = record.watch.words(); !words.empty())
     fmt::print(stderr, "waverig: {}: {}\n", arguments.input, words);
+  for (const estimator::OffsetChange& change : collector.offset_changes())
+    fmt::print(stderr,
+               "waverig: {}: {:.1f} s after the first sample the vertical offset changed by {:+.3f} m/s^2: "
+               "taken off\n",
+               arguments.input, static_cast<double>(change.utime - record.begin_utime) * kMicrosecond,
+               change.mps2);
   fmt::print("{}", json);
   return 0;
 }

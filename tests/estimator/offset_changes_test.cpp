@@ -40,6 +40,24 @@ TEST(OffsetChanges, AreFoundWithTheirTimeAndSize) {
     }
 }
 
+struct Told : estimator::Output {
+  std::vector<OffsetChange> changes;
+  void offset_change(const OffsetChange& change) override { changes.push_back(change); }
+};
+
+TEST(OffsetChanges, AreToldByTheMethodsThatTakeThemOff) {
+  SeaRecord record = sea_record({.tp_s = 3, .hm0_m = 0.5, .duration_s = 300}, 1);
+  change_offset(record, {150, 0.2});
+  for (const char* name : {"smoothed", "spectral"}) {
+    const auto method = estimator::make_method(name, {});
+    Told told;
+    for (const auto& sample : record.samples) method->add(sample, told);
+    method->finish(told);
+    ASSERT_EQ(told.changes.size(), 1U) << name;
+    EXPECT_NEAR(told.changes[0].mps2, 0.2, 0.01) << name;
+  }
+}
+
 // Neither the lowest waves of a heavy sea, nor a rest, nor a sea that comes up or dies away.
 TEST(OffsetChanges, AreNotFoundWhereThereAreNone) {
   for (const SeaCase& sea : {SeaCase{.tp_s = 3, .hm0_m = 0.5}, {.tp_s = 8, .hm0_m = 4}, {.tp_s = 12, .hm0_m = 4},
