@@ -91,7 +91,8 @@ void Realtime::add(const ImuSample& raw, Output& output) {
     steps_.clear();
   }
   if (rethinks_) first_.push_back(sample);
-  if (std::exchange(due_, false)) {
+  const bool moves = rethinks_ || rise_ || filter_.rest_s() == 0;  // a rest tells nothing of the sea
+  if (moves && std::exchange(due_, false)) {
     if (rethinks_)
       attitude = rethink();
     else if (rise_)
@@ -385,7 +386,6 @@ void Realtime::estimate(const Held& held, HeaveSample& out) const {
     variance = filter_.lagged_variance_m2(ago - 1);
   }
   out.heave_m += jump_m_;
-  out.heave_rate_mps -= jump_m_ / kJumpFades_s;
   out.heave_sigma_m = std::sqrt(variance + square(jump_m_) +
                                 systematic_variance_m2(filter_.model(), motion_, settings_.sensor));
 }

@@ -81,6 +81,28 @@ TEST(Realtime, RemembersAtWhichLevelOfItsSeaItRested) {
     }
 }
 
+// The jolt that ends a run is no sea, and the rest after it tells of none: how fast the body moves is known in the runs
+// after it as in any sea, and nothing moves in the rests.
+TEST(Realtime, TakesNoJoltBeforeARestForASea) {
+  const SeaCase sea{.tp_s = 6, .hm0_m = 1, .duration_s = 60};
+  constexpr double kRest_s = 60;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const auto [record, begins_s] = runs_and_rests(sea, sea, kRest_s, 4, seed, 0.5);
+    const Collector out = run_realtime(record.samples);
+    for (std::size_t run = 1; run < begins_s.size(); ++run) {
+      const auto begin = static_cast<std::size_t>(100 * (begins_s[run] - 1));
+      double error = 0, truth = 0, rest = 0;
+      for (std::size_t i = begin - 3000; i < begin; ++i) rest += square(out.heaves[i].heave_rate_mps);
+      for (std::size_t i = begin; i < begin + 6000; ++i) {
+        error += square(out.heaves[i].heave_rate_mps - record.heave_rate_mps[i]);
+        truth += square(record.heave_rate_mps[i]);
+      }
+      EXPECT_LT(std::sqrt(error / truth) / 4, 0.03) << "seed " << seed << ", run " << run;
+      EXPECT_LT(std::sqrt(rest / 3000), 0.01) << "seed " << seed << ", before run " << run;
+    }
+  }
+}
+
 // Before it is moved a board is touched.
 TEST(Realtime, IsNotMisledByWhatStirsBeforeTheMotion) {
   struct Stir {

@@ -79,6 +79,20 @@ TEST(Realtime, HasUnitGainAndNoLagAtTheWaveFrequencies) {
   }
 }
 
+TEST(Realtime, GivesTheHeaveRate) {
+  for (const SeaCase& c : {SeaCase{.tp_s = 3, .hm0_m = 0.5, .duration_s = 600}, {.tp_s = 8, .hm0_m = 1.5, .duration_s = 600}})
+    for (const double lag_s : {0.0, 2.0}) {
+      const SeaRecord record = sea_record(c, 1);
+      const Collector out = run_realtime(record.samples, lag_s);
+      double error = 0, truth = 0;
+      for (std::size_t i = kSettled; i < record.samples.size(); ++i) {
+        error += square(out.heaves[i].heave_rate_mps - record.heave_rate_mps[i]);
+        truth += square(record.heave_rate_mps[i]);
+      }
+      EXPECT_LT(std::sqrt(error / truth) / 4, 0.006) << c.tp_s << " s, " << lag_s << " s late";
+    }
+}
+
 // Even with spectrum and attitude known, the first waves are not: 1.2 to 1.7 % of Hm0 are left over twenty minutes, and
 // 3.0 % at 12 s and 1 m (evaluation/heave_bound.h, white noise).
 TEST(Realtime, StaysWithinTheStatedErrorOverAWholeRecordThatBeginsInMidSea) {
