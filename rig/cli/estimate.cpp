@@ -145,13 +145,16 @@ class SeaStates : public estimator::Output {
 struct Record {
   rig::SampleWatch watch;
   std::int64_t begin_utime = 0, end_utime = 0;
-  double force_sum_mps2 = 0;
+  double force_sum_mps2 = 0;  // of those that have one
+  std::int64_t forces = 0;
 
   void add(const ImuSample& sample) {
     if (watch.samples() == 0) begin_utime = sample.utime;
     watch.add(sample);
     end_utime = sample.utime;
+    if (!sample.f_B.allFinite()) return;
     force_sum_mps2 += sample.f_B.norm();
+    ++forces;
   }
 };
 
@@ -183,11 +186,15 @@ std::string summary_json(const evaluation::Summary& summary, const EstimateArgum
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-void check_units(double mean_force_mps2, const EstimateArguments& arguments) {
+void check_units(const Record& record, const EstimateArguments& arguments) {
+  const double mean_force_mps2 = record.force_sum_mps2 / static_cast<double>(record.forces);
   if (std::abs(mean_force_mps2 - arguments.gravity_mps2) > 0.4 * arguments.gravity_mps2)
     throw UserError(
         fmt::format("{}: the mean specific force is {:.3f}; expected about {:.2f} (m/s^2, gravity included)",
                     arguments.input, mean_force_mps2, arguments.gravity_mps2));
+  if (record.watch.left_out() == record.watch.samples())
+    throw UserError(fmt::format("{}: {}; expected samples in m/s^2 and rad/s, nothing is told from these",
+                                arguments.input, record.watch.words()));
 }
 
 int estimate(const EstimateArguments& arguments) {
@@ -227,7 +234,7 @@ int estimate(const EstimateArguments& arguments) {
   }
   method->finish(collector);
   check_time_unit(arguments.input, record.watch.usual_interval_s());
-  check_units(record.force_sum_mps2 / static_cast<double>(record.watch.samples()), arguments);
+  check_units(record, arguments);
 
   const std::vector<estimator::Wave> waves = collector.waves();
   evaluation::Summary summary = evaluation::summary_of(arguments.method, waves);

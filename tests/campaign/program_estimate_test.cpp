@@ -186,6 +186,46 @@ TEST(Program, KeepsAnEarlierCalibrationWhereThePlaceCannotBeWritten) {
   EXPECT_EQ(bytes_of(temporary / "unit7.json"), "the one before");
 }
 
+// Angular rates in degrees per second, the whole record beyond what is plausible.
+TEST(Program, RefusesARecordingOfWhichEverySampleWasLeftOut) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  std::string degrees = "utime,ax,ay,az,gx,gy,gz\n";
+  for (int row = 0; row < 1000; ++row)
+    degrees += std::to_string(20000 * row) + ",0,0," + std::to_string(-9.8 + 0.001 * (row % 7)) + ",400,0,0\n";
+  temporary.write("degrees.csv", degrees);
+  ASSERT_EQ(run(temporary, "estimate wave.csv --out out").status, 0);
+  const std::string summary = bytes_of(temporary / "out/summary.json"),
+                    heave = bytes_of(temporary / "out/heave.csv");
+  const Outcome refused = run(temporary, "estimate degrees.csv --out out");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_EQ(refused.err,
+            "waverig: degrees.csv: 1000 of 1000 samples left out: 1000 not finite or beyond what is plausible; "
+            "expected samples in m/s^2 and rad/s, nothing is told from these\n");
+  EXPECT_EQ(bytes_of(temporary / "out/summary.json"), summary);
+  EXPECT_EQ(bytes_of(temporary / "out/heave.csv"), heave);
+}
+
+// One sample that is not a number is left out; it does not hide that the others are in g.
+TEST(Program, SeesTheUnitsOfALogWithASampleThatIsNoNumber) {
+  const TemporaryDirectory temporary;
+  EventLogWriter writer(temporary / "g.lcm");
+  imu_t m{};
+  std::vector<std::uint8_t> data(static_cast<std::size_t>(m.getEncodedSize()));
+  for (m.seq = 0; m.seq < 1000; ++m.seq) {
+    m.utime = 20000 * m.seq;
+    m.accel_mps2[2] = m.seq == 500 ? std::nan("") : -1 + 0.001 * static_cast<double>(m.seq % 7);
+    m.encode(data.data(), 0, m.getEncodedSize());
+    writer.write(m.utime, channel::kImu, data.data(), data.size());
+  }
+  writer.close();
+  const Outcome refused = run(temporary, "estimate g.lcm --out out");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("g.lcm: the mean specific force is 0.997; expected about 9.81"), std::string::npos)
+      << refused.err;
+}
+
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
   const TemporaryDirectory temporary;
   temporary.write("wave.csv", wave_record());
