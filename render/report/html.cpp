@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 #include "lcmtypes/error.h"
 #include "render/report/report_assets.h"
@@ -86,9 +86,17 @@ std::string HtmlTable::html(Caption caption, bool sortable) const {
   return out + "</tbody></table></div>\n";
 }
 
+std::string content_of(const std::filesystem::path& path, std::string_view expected) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream content;
+  // A folder opens as a file does, and fails at its first byte.
+  if (!file || (file.peek() != std::ifstream::traits_type::eof() && !(content << file.rdbuf())) || file.bad())
+    throw UserError(fmt::format("{}: cannot be read; expected {}", path.string(), expected));
+  return content.str();
+}
+
 std::string html_figure(const std::filesystem::path& png, std::string_view caption) {
-  std::ifstream file(png, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = content_of(png, "a PNG picture");
   if (bytes.size() < 24) throw UserError(png.string() + ": a PNG picture expected");
   const auto u32 = [&](std::size_t at) {
     std::uint32_t v = 0;

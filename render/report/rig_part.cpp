@@ -2,8 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "lcmtypes/error.h"
@@ -15,11 +13,6 @@ namespace waverig::render {
 namespace {
 
 using nlohmann::json;
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 std::string folded(const char* title, const std::string& text) {
   return fmt::format("<details><summary>{}</summary><pre>{}</pre></details>\n", title, html_text(text));
@@ -65,7 +58,9 @@ std::string sensor_part(const std::string& text) {
 }  // namespace
 
 std::string rig_section(const evaluation::CampaignResults& results, const std::filesystem::path& directory) {
-  const std::string settings = content_of(directory / "campaign.toml");
+  const std::filesystem::path file = directory / "campaign.toml";
+  const std::string settings =
+      std::filesystem::exists(file) ? content_of(file, "the resolved settings of a campaign") : "";
   if (settings.empty() && results.calibration_json.empty()) return "";
   std::string out = "<section id=\"rig\"><h2>Rig and sensor</h2>\n<p>";
   out += are_seas(results)

@@ -278,6 +278,23 @@ TEST(Html, Base64OfAPictureIsWhole) {
   EXPECT_TRUE(code.starts_with("iVBORw0KGgo")) << "the signature of PNG";
 }
 
+// A folder of the name opens as a file does, and gives nothing.
+TEST(Report, NamesAFileThatCannotBeRead) {
+  const Example example;
+  for (const char* name : {"campaign.toml", "figures/paper-table-2.png"}) {
+    const std::filesystem::path path = example.folder.path() / name;
+    std::filesystem::remove(path);
+    std::filesystem::create_directory(path);
+    try {
+      report_html(example.results, example.folder.path());
+      ADD_FAILURE() << name;
+    } catch (const UserError& error) {
+      EXPECT_EQ(std::string(error.what()).find(path.string() + ": cannot be read; expected "), 0U) << error.what();
+    }
+    std::filesystem::remove(path);
+  }
+}
+
 TEST(Html, UnknownNumbersAreDashesAndSortLast) {
   HtmlTable table("t", {"a"});
   table.add_row({number_cell(std::nan(""), 2)});
