@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cerrno>
 #include <cstring>
 #include <system_error>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 
 namespace waverig {
@@ -34,7 +36,8 @@ T get(const std::uint8_t*& at) {
 
 EventLogWriter::EventLogWriter(const std::filesystem::path& path)
     : path_(path), file_(std::fopen(path.c_str(), "wb")), buffer_(kFileBuffer) {
-  if (!file_) throw UserError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+  const std::error_code error(file_ ? 0 : errno, std::generic_category());
+  if (error) refuse_place(error, fmt::format("{}: cannot be written: {}", path.string(), error.message()));
   std::setvbuf(file_.get(), buffer_.data(), _IOFBF, buffer_.size());
 }
 

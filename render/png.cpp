@@ -1,18 +1,14 @@
 #include "render/png.h"
 
 #include <libdeflate.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 
-#include "lcmtypes/error.h"
+#include "estimator/evaluation/atomic_file.h"
 
 namespace waverig::render {
 namespace {
@@ -92,18 +88,7 @@ const std::vector<std::uint8_t>& PngEncoder::encode(const Image& image, const Pn
 }
 
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size) {
-  const std::filesystem::path part = path.string() + '.' + std::to_string(::getpid()) + ".partial";
-  std::ofstream file(part, std::ios::binary);
-  if (!file) throw UserError(path.string() + ": cannot be written");
-  file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(part, path, error);
-  if (file && !error) return;
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
-  if (error) throw UserError(path.string() + ": cannot be written: " + error.message());
-  throw std::runtime_error(path.string() + ": not everything could be written");
+  evaluation::write_atomically(path, {static_cast<const char*>(data), size});
 }
 
 }  // namespace waverig::render

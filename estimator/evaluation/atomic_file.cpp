@@ -7,14 +7,15 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "lcmtypes/error.h"
+#include "lcmtypes/disk.h"
 
 namespace waverig::evaluation {
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), temporary_(path_) {
   temporary_ += fmt::format(".{}.partial", ::getpid());
   file_.reset(std::fopen(temporary_.c_str(), "wb"));
-  if (!file_) throw UserError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+  const std::error_code error(file_ ? 0 : errno, std::generic_category());
+  if (error) refuse_place(error, fmt::format("{}: cannot be written: {}", path_.string(), error.message()));
 }
 
 AtomicFile::~AtomicFile() {
@@ -37,9 +38,12 @@ void AtomicFile::flush() {
 
 void AtomicFile::commit() {
   flush();
-  std::error_code error;
-  std::filesystem::rename(temporary_, path_, error);
-  if (error) throw UserError(fmt::format("{}: cannot be written: {}", path_.string(), error.message()));
+  try {
+    rename_whole(temporary_, path_);
+  } catch (const std::filesystem::filesystem_error& error) {
+    refuse_place(error.code(),
+                 fmt::format("{}: cannot be written: {}", path_.string(), error.code().message()));
+  }
   file_.reset();
 }
 

@@ -9,7 +9,7 @@ namespace waverig::evaluation {
 
 class AtomicFile {
  public:
-  // Throws UserError where the folder cannot be written.
+  // Throws UserError where the folder cannot be written, std::runtime_error where the disk is full.
   explicit AtomicFile(std::filesystem::path path);
   ~AtomicFile();  // without commit() nothing remains
   AtomicFile(const AtomicFile&) = delete;

@@ -2,32 +2,32 @@
 
 #include <fmt/format.h>
 #include <netcdf.h>
-#include <unistd.h>
+#include <netcdf_mem.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/flag_names.h"
 #include "estimator/evaluation/waves_csv.h"
 
 namespace waverig::evaluation {
 namespace {
 
-// One open NetCDF file; closed without a trace unless committed.
+// One NetCDF file; nothing of it is left unless committed. Made in memory, since HDF5 crashes on a disk that is
+// full; its file is padded with zeros to whole blocks of 64 KiB then.
 class File {
  public:
-  explicit File(std::filesystem::path path) : path_(std::move(path)), temporary_(path_) {
-    temporary_ += fmt::format(".{}.partial", ::getpid());
-    check(nc_create(temporary_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_));
+  explicit File(std::filesystem::path path) : path_(std::move(path)) {
+    check(nc_create_mem(path_.filename().c_str(), NC_NETCDF4, 0, &id_));
     open_ = true;
   }
   ~File() {
-    if (!open_) return;
-    nc_abort(id_);
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
+    if (open_) nc_abort(id_);
   }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
@@ -64,9 +64,11 @@ class File {
   }
   void end_definitions() { check(nc_enddef(id_)); }
   void commit() {
-    check(nc_close(id_));
+    NC_memio made{};
     open_ = false;
-    std::filesystem::rename(temporary_, path_);
+    check(nc_close_memio(id_, &made));
+    const std::unique_ptr<void, void (*)(void*)> bytes(made.memory, std::free);
+    write_atomically(path_, {static_cast<const char*>(made.memory), made.size});
   }
 
  private:
@@ -75,7 +77,7 @@ class File {
       throw std::runtime_error(fmt::format("{}: {}", path_.string(), nc_strerror(status)));
   }
 
-  std::filesystem::path path_, temporary_;
+  std::filesystem::path path_;
   int id_ = 0;
   bool open_ = false;
 };

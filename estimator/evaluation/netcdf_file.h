@@ -21,8 +21,8 @@ struct NetcdfRecord {
   std::string title;
 };
 
-// Written beside its name and renamed: there whole or not at all. Throws std::runtime_error, naming the file,
-// where it cannot be written.
+// There whole or not at all. Throws UserError where the place cannot be written, std::runtime_error where the
+// disk is full; both name the file.
 void write_netcdf(const std::filesystem::path& path, const NetcdfRecord& record);
 
 }  // namespace waverig::evaluation

@@ -10,6 +10,7 @@ extern "C" {
 #include <array>
 #include <string>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::render {
@@ -35,7 +36,9 @@ struct VideoWriter::Stream {
   bool finished = false;
 
   void check(int result, const char* what) const {
-    if (result < 0) throw UserError(path.string() + ": " + what + ": " + reason(result));
+    if (result < 0)
+      refuse_place({AVUNERROR(result), std::generic_category()},
+                   path.string() + ": " + what + ": " + reason(result));
   }
   ~Stream() {
     sws_freeContext(convert);

@@ -18,7 +18,7 @@ struct VideoSettings {
 class VideoWriter {
  public:
   // Throws UserError where the file cannot be made, the size is odd, or libav
-  // has no H.264 encoder.
+  // has no H.264 encoder, std::runtime_error (finish() too) where the disk is full.
   VideoWriter(const std::filesystem::path& path, const VideoSettings& settings);
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;

@@ -6,9 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
-#include "lcmtypes/error.h"
+#include "lcmtypes/disk.h"
 
 namespace waverig::rig {
 
@@ -19,9 +18,10 @@ void DirectoryLock::Closer::operator()(const int* descriptor) const {
 
 std::optional<DirectoryLock> DirectoryLock::take(const std::filesystem::path& directory) {
   const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0)
-    throw UserError(fmt::format("{}: {}; expected a directory that can be read and written",
-                                directory.string(), std::strerror(errno)));
+  const std::error_code error(descriptor < 0 ? errno : 0, std::generic_category());
+  if (error)
+    refuse_place(error, fmt::format("{}: {}; expected a directory that can be read and written",
+                                    directory.string(), error.message()));
   DirectoryLock lock(descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return std::nullopt;
   return lock;

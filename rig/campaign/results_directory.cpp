@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "rig/campaign/settings.h"
 
@@ -54,13 +55,13 @@ void take_file(const fs::path& from, const fs::path& to) {
     fs::remove(partial, error);
     throw std::runtime_error(fmt::format("{}: not everything could be written: {}", to.string(), reason));
   }
-  fs::rename(partial, to);
+  rename_whole(partial, to);
 }
 
 }  // namespace
 
 ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode, bool resumes)
-    : directory_(directory), place_(place_of(directory)), working_(beside(place_, ".partial")) {
+    : directory_(directory), place_(place_of(directory)), working_(beside(place_, ".partial")), resumes_(resumes) {
   if (fs::exists(place_) && !fs::is_directory(place_))
     throw UserError(fmt::format("--out {}: is a file; expected a directory", directory_.string()));
   const bool finished = fs::exists(place_) && !fs::is_empty(place_);
@@ -84,10 +85,19 @@ ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode, bool re
   }
   std::error_code error;
   fs::create_directories(runs(), error);
-  if (error)
-    throw UserError(fmt::format("--out {}: cannot be made: {}; expected a writable place",
-                                directory_.string(), error.message()));
+  if (error) {
+    std::error_code ignored;
+    if (!begun) fs::remove_all(working_, ignored);
+    refuse_place(error, fmt::format("--out {}: cannot be made: {}; expected a writable place",
+                                    directory_.string(), error.message()));
+  }
   if (!lock_) lock();
+}
+
+// What no command could go on with would only be in the next one's way.
+ResultsDirectory::~ResultsDirectory() {
+  std::error_code ignored;
+  if (!resumes_ && !finished_) fs::remove_all(working_, ignored);
 }
 
 void ResultsDirectory::lock() {
@@ -120,11 +130,12 @@ void ResultsDirectory::finish() {
     const fs::path old = beside(place_, ".replaced");
     fs::remove_all(old);
     fs::rename(place_, old);
-    fs::rename(working_, place_);
+    rename_whole(working_, place_);
     fs::remove_all(old);
   } else {
-    fs::rename(working_, place_);
+    rename_whole(working_, place_);
   }
+  finished_ = true;
 }
 
 void refuse_other_campaign(const fs::path& from, const fs::path& to) {

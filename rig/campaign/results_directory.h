@@ -20,6 +20,9 @@ class ResultsDirectory {
   // nobody's to remove. `resumes`: the command knows --resume. Throws UserError naming --out, also where
   // another process is at work in DIR.partial.
   ResultsDirectory(const std::filesystem::path& directory, Mode mode, bool resumes = true);
+  ~ResultsDirectory();  // without finish() DIR.partial stays for --resume, or goes where there is none
+  ResultsDirectory(const ResultsDirectory&) = delete;
+  ResultsDirectory& operator=(const ResultsDirectory&) = delete;
 
   const std::filesystem::path& working() const { return working_; }
   std::filesystem::path runs() const { return working_ / "runs"; }
@@ -36,6 +39,7 @@ class ResultsDirectory {
 
   std::filesystem::path directory_, place_, working_;  // as it was named; where it is
   std::optional<DirectoryLock> lock_;                  // of working_
+  bool resumes_, finished_ = false;
 };
 
 // A campaign judged into another directory: settings, calibrations and logs come with it, so that figures,

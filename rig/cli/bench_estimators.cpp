@@ -16,6 +16,7 @@
 #include "rig/cli/commands.h"
 #include "rig/cli/estimator_bench.h"
 #include "rig/cli/number_checks.h"
+#include "rig/cli/recording.h"
 
 namespace waverig::cli {
 namespace {
@@ -178,15 +179,8 @@ void cover(const BenchEstimatorsArguments& arguments, int rigs) {
   if (!arguments.out.empty()) evaluation::write_atomically(fs::path(arguments.out) / "coverage.csv", text);
 }
 
-void make_directory(const std::string& out) {
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error)
-    throw UserError(fmt::format("--out {}: {}; expected a directory that can be made", out, error.message()));
-}
-
 int bench_estimators(const BenchEstimatorsArguments& arguments) {
-  if (!arguments.out.empty()) make_directory(arguments.out);
+  if (!arguments.out.empty()) make_out_directory(arguments.out);
   const rig::CalibratedUnit calibrated = rig::calibrate(rig::read_campaign("", &arguments.seed).settings);
   const int records = arguments.seeds > 0 ? arguments.seeds : (arguments.full ? 3 : 1);
   fmt::print("{}", heading());

@@ -215,12 +215,7 @@ int estimate(const EstimateArguments& arguments) {
   const auto method = estimator::make_method(arguments.method, settings);
 
   const fs::path out = arguments.out;
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error)
-    throw UserError(fmt::format("--out {}: {}; expected a directory that can be made and written",
-                                arguments.out, error.message()));
-
+  make_out_directory(arguments.out);
   keep_signals();
   Collector collector(out / "heave.csv");
   SeaStates sea_states(arguments.method, settings);

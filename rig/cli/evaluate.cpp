@@ -45,13 +45,6 @@ struct EvaluateArguments {
   std::vector<const CLI::Option*> of_heave, of_campaign;  // options that only one kind of input knows
 };
 
-void make_directory(const std::string& out) {
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error)
-    throw UserError(fmt::format("--out {}: {}; expected a directory that can be made", out, error.message()));
-}
-
 evaluation::HeaveComparison against_truth(const EvaluateArguments& arguments,
                                           const evaluation::HeaveSeries& heave) {
   const evaluation::HeaveSeries truth = evaluation::read_heave_csv(arguments.truth);
@@ -82,7 +75,7 @@ int evaluate_heave(const EvaluateArguments& arguments) {
     summary.heave_gain = comparison.gain();
     summary.heave_lag_s = comparison.lag_s();
   }
-  make_directory(arguments.out);
+  make_out_directory(arguments.out);
   evaluation::AtomicFile waves_file(fs::path(arguments.out) / "waves.csv"),
       summary_file(fs::path(arguments.out) / "summary.json");
   waves_file.write(evaluation::waves_csv(waves));
@@ -230,7 +223,7 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
   results.cells = evaluation::cells_of(results.runs);
   results.judged_version = kVersion;
   results.judged_command = command_of(arguments);
-  make_directory(out.string());
+  make_out_directory(out.string());
   if (elsewhere) rig::take_campaign(directory, out);
   evaluation::write_results(out, results);
   fmt::print("{}", evaluation::results_csv(results.cells));

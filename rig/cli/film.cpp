@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "estimator/evaluation/run_record.h"
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "render/scene/film.h"
 #include "rig/cli/commands.h"
@@ -52,7 +53,7 @@ int film(const FilmArguments& arguments) {
     end_if_told();
     if (terminal) fmt::print(stderr, "\r\033[K{} of {} frames", done, all);
   });
-  fs::rename(partial.path, arguments.out);
+  rename_whole(partial.path, arguments.out);
   if (terminal) fmt::print(stderr, "\r\033[K");
   fmt::print("{}\n", arguments.out);
   return 0;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "rig/cli/commands.h"
 #include "rig/cli/signals.h"
@@ -23,10 +24,9 @@ int fail(ExitStatus status, const char* message) {
 
 // A place that the user has named; where the machine fails, no other name would help.
 int fail(const std::filesystem::filesystem_error& error) {
-  const bool machine = error.code() == std::errc::no_space_on_device || error.code() == std::errc::io_error;
   const std::string sentence = error.path1().string() + ": " + error.code().message() +
                                "; expected a place that can be read and written";
-  return fail(machine ? kAnswerIsNo : kBadInput, sentence.c_str());
+  return fail(waverig::is_of_the_machine(error.code()) ? kAnswerIsNo : kBadInput, sentence.c_str());
 }
 
 // CLI11 tells of a missing command where the one given is unknown: commands of commands too.

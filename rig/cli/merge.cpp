@@ -58,23 +58,14 @@ int merge(const MergeArguments& arguments) {
   using Mode = rig::ResultsDirectory::Mode;
   rig::ResultsDirectory directory(arguments.out, arguments.replace ? Mode::kReplace : Mode::kFresh,
                                   /*resumes=*/false);
-  const auto fill = [&] {
-    std::filesystem::remove(directory.runs());  // merge_into makes its own
-    evaluation::merge_into(directory.working(), shards, results);
-    if (const auto& front_end = campaign.settings.calibration.front_end)
-      estimator::save(front_end->calibration, directory.working() / rig::kFrontEndFile);
-    const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    draw_campaign(results, directory.working(), rig::calibrate(campaign.settings).unit, jobs);
-    evaluation::write_atomically(directory.working() / "report.html",
-                                 render::report_html(results, directory.working()));
-  };
-  try {
-    fill();
-  } catch (...) {
-    std::error_code ignored;  // nothing of it is new
-    std::filesystem::remove_all(directory.working(), ignored);
-    throw;
-  }
+  std::filesystem::remove(directory.runs());  // merge_into makes its own
+  evaluation::merge_into(directory.working(), shards, results);
+  if (const auto& front_end = campaign.settings.calibration.front_end)
+    estimator::save(front_end->calibration, directory.working() / rig::kFrontEndFile);
+  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  draw_campaign(results, directory.working(), rig::calibrate(campaign.settings).unit, jobs);
+  evaluation::write_atomically(directory.working() / "report.html",
+                               render::report_html(results, directory.working()));
   directory.finish();
   fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover),
              arguments.out, (std::filesystem::path(arguments.out) / "report.html").string());

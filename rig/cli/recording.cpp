@@ -9,6 +9,7 @@
 #include "estimator/evaluation/sample_csv.h"
 #include "estimator/messages.h"
 #include "lcmtypes/channels.h"
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/event_log.h"
 #include "lcmtypes/flags.h"
@@ -86,6 +87,14 @@ void refuse_to_overwrite(const fs::path& recording, const fs::path& out) {
   std::error_code ignored;  // of an output that is not there
   if (fs::equivalent(recording, out, ignored))
     throw UserError(fmt::format("--out {}: is the recording itself; expected another file", out.string()));
+}
+
+void make_out_directory(const std::string& out) {
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error)
+    refuse_place(error, fmt::format("--out {}: {}; expected a directory that can be made and written", out,
+                                    error.message()));
 }
 
 std::vector<ImuSample> all_of(const SampleSource& source) {

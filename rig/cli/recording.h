@@ -27,6 +27,9 @@ void check_time_unit(const std::string& file, double usual_interval_s);
 // Throws UserError where --out names the recording itself.
 void refuse_to_overwrite(const std::filesystem::path& recording, const std::filesystem::path& out);
 
+// The folder that --out names, made where it is not there. Throws as refuse_place() of lcmtypes/disk.h.
+void make_out_directory(const std::string& out);
+
 std::vector<estimator::ImuSample> all_of(const SampleSource& source);
 
 }  // namespace waverig::cli

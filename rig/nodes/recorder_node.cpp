@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "lcmtypes/channels.h"
+#include "lcmtypes/disk.h"
 #include "rig/nodes/message_head.h"
 
 namespace waverig::rig {
@@ -40,7 +41,7 @@ std::map<std::string, std::int64_t> RecorderNode::missing() const {
 
 void RecorderNode::close() {
   writer_.close();
-  std::filesystem::rename(part_, path_);
+  rename_whole(part_, path_);
 }
 
 }  // namespace waverig::rig

@@ -167,6 +167,41 @@ TEST(Program, AnEarlierEvaluationIsReplacedAsAWhole) {
   EXPECT_FALSE(std::filesystem::exists(temporary / "out/record.nc")) << "of the earlier call";
 }
 
+TEST(Program, KeepsAnEarlierEvaluationWhereTheDiskIsFull) {
+  const TemporaryDirectory temporary;
+  std::string csv = "utime,heave_m\n";
+  for (int i = 0; i < 3000; ++i)
+    csv += std::to_string(200000 * i) + "," + std::to_string(std::sin(0.2 * i)) + "\n";
+  temporary.write("heave.csv", csv);
+  ASSERT_EQ(run(temporary, "evaluate heave.csv --out out --netcdf").status, 0);
+  const std::string record = bytes_of(temporary / "out/record.nc"), summary = bytes_of(temporary / "out/summary.json");
+  for (const std::string blocks : {"1", "30", "60"}) {
+    const Outcome full = run(temporary, "--version >/dev/null; ulimit -f " + blocks + "; trap '' XFSZ; " WAVERIG_PROGRAM
+                                        " evaluate heave.csv --out out --netcdf");
+    EXPECT_EQ(full.status, 1) << blocks << full.err;
+    EXPECT_NE(full.err.find("not everything could be written: File too large"), std::string::npos) << full.err;
+    EXPECT_EQ(bytes_of(temporary / "out/record.nc"), record);
+    EXPECT_EQ(bytes_of(temporary / "out/summary.json"), summary);
+    const auto left = std::filesystem::directory_iterator(temporary / "out");
+    EXPECT_EQ(std::distance(begin(left), end(left)), 3) << blocks;
+  }
+}
+
+TEST(Program, AFullDiskLeavesNoHalfAnalysisAndNoHalfFilm) {
+  const TemporaryDirectory temporary;
+  temporary.write("c.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep c.toml --out done").status, 0);
+  for (const std::string command : {"analyse compass --runs 2 --out full/compass",
+                                    "film done/runs/T04.00s_H050.0cm_r1.lcm --seconds 1 --out full/rig.mp4"}) {
+    std::filesystem::create_directories(temporary / "full");
+    const Outcome full =
+        run(temporary, "--version >/dev/null; ulimit -f 4; trap '' XFSZ; " WAVERIG_PROGRAM " " + command);
+    EXPECT_EQ(full.status, 1) << command << full.err;
+    EXPECT_NE(full.err.find("File too large"), std::string::npos) << full.err;
+    EXPECT_TRUE(std::filesystem::is_empty(temporary / "full")) << command;
+  }
+}
+
 TEST(Program, KeepsAnEarlierCalibrationWhereThePlaceCannotBeWritten) {
   const TemporaryDirectory temporary;
   temporary.write("sides.csv", six_sides(0.25));

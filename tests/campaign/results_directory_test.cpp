@@ -36,6 +36,17 @@ TEST(ResultsDirectory, RefusesToBeginWhereAnUnfinishedOneWaits) {
   EXPECT_NO_THROW(ResultsDirectory(temporary / "out", Mode::kResume));
 }
 
+TEST(ResultsDirectory, WhatNobodyCouldGoOnWithLeavesNothingUnfinished) {
+  const TemporaryDirectory temporary;
+  { ResultsDirectory abandoned(temporary / "out", Mode::kFresh, /*resumes=*/false); }
+  EXPECT_FALSE(fs::exists(temporary / "out.partial"));
+  ResultsDirectory directory(temporary / "out", Mode::kFresh, /*resumes=*/false);
+  EXPECT_THROW(ResultsDirectory(temporary / "out", Mode::kFresh, /*resumes=*/false), UserError);
+  EXPECT_TRUE(fs::exists(directory.working())) << "another's is not taken away";
+  directory.finish();
+  EXPECT_TRUE(fs::exists(temporary / "out"));
+}
+
 TEST(ResultsDirectory, KeepsTheOldResultsUntilTheNewAreWhole) {
   const TemporaryDirectory temporary;
   fs::create_directories(temporary / "out");

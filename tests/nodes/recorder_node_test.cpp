@@ -9,6 +9,7 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/event_log.h"
 #include "tests/campaign/temporary_directory.h"
+#include "tests/lcmtypes/synced_files.h"
 
 namespace waverig::rig {
 namespace {
@@ -54,6 +55,16 @@ TEST(RecorderNode, ItsTimesGrowAndLcmsOwnTestIsNoPartOfIt) {
   }
   EXPECT_EQ(times, (std::vector<std::int64_t>{5, 5, 9}));
   EXPECT_EQ(seqs, (std::vector<std::int64_t>{5, 3, 9}));
+}
+
+// A resumed sweep believes a log that has its name.
+TEST(RecorderNode, ALogIsOnTheDiskBeforeItHasItsName) {
+  const TemporaryDirectory temporary;
+  Bus bus;
+  RecorderNode node(bus, temporary / "run.lcm");
+  synced_files().clear();
+  node.close();
+  EXPECT_EQ(synced_files(), (std::vector<std::string>{temporary / "run.lcm.part", temporary.path()}));
 }
 
 }  // namespace

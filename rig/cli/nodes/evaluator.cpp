@@ -32,7 +32,7 @@ rig::ResultsDirectory new_directory(const EvaluatorArguments& arguments) {
     throw UserError(
         fmt::format("--out {}: {} holds runs of an unfinished sweep; expected a new directory, or --replace",
                     arguments.out, unfinished.string()));
-  return {out, rig::ResultsDirectory::Mode::kReplace};
+  return {out, rig::ResultsDirectory::Mode::kReplace, /*resumes=*/false};
 }
 
 void refuse_unless_whole(Ending ending, const rig::RunWatch& watch, const std::string& run) {
