@@ -5,9 +5,11 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <memory>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "rig/bench/simulation/simulated_laboratory.h"
 
@@ -19,7 +21,10 @@ class DirectoryLock {
  public:
   explicit DirectoryLock(const std::filesystem::path& directory)
       : descriptor_(::open((directory / "bench.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
-    if (descriptor_ < 0) throw UserError(fmt::format("{}: cannot be written", directory.string()));
+    const std::error_code error(descriptor_ < 0 ? errno : 0, std::generic_category());
+    if (error)
+      refuse_place(error, fmt::format("{}: cannot be written: {}; expected a writable directory",
+                                      directory.string(), error.message()));
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
     ::close(descriptor_);
     throw UserError(fmt::format("{}: another bench is at work there: expected a directory of its own",

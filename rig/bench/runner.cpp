@@ -64,7 +64,7 @@ std::string Runner::run(bool resume) {
     store_.set_outcome("running");
     for (; next_ < sequence_.plan.size() && sequence_.plan[next_].section != Section::kTeardown; ++next_)
       carry_out(next_);
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     // Instruments, rules, the user: whatever it is, leave everything safe.
     aborted = true;
     outcome = error.what();
@@ -311,20 +311,29 @@ void Runner::commit(const PlannedStep& step, StepOutcome outcome, const std::str
   store_.commit(row, measured.recordings, std::exchange(trace_, {}), state);
 }
 
+// Whatever else fails, a disk that is full or a picture of the run: first all is made safe.
 void Runner::tear_down(bool aborted) {
+  std::exception_ptr failure;
+  const auto try_to = [&failure](auto work) {
+    try {
+      work();
+    } catch (const std::exception&) {
+      if (!failure) failure = std::current_exception();
+    }
+  };
   for (std::size_t i = next_; i < sequence_.plan.size(); ++i) {
     const PlannedStep& step = sequence_.plan[i];
     if (step.section != Section::kTeardown) continue;
     const std::int64_t started = reactor_.now();
     std::string fault;
     Measured measured;
-    report(step);
+    try_to([&] { report(step); });
     for (int tries = 0; tries <= step.retries + 1; ++tries) {
       fault.clear();
       try {
         measured = attempt(step);
         break;
-      } catch (const std::runtime_error& error) {
+      } catch (const std::exception& error) {
         fault = error.what();
       }
     }
@@ -336,12 +345,13 @@ void Runner::tear_down(bool aborted) {
     const StepOutcome outcome = !fault.empty() ? StepOutcome::kFailed
                                 : aborted      ? StepOutcome::kMadeSafe
                                                : StepOutcome::kDone;
-    commit(step, outcome, fault, started, std::move(measured));
+    try_to([&] { commit(step, outcome, fault, started, std::move(measured)); });
   }
   for (const std::string& complaint : instruments_.make_safe()) {
     alarm_ = complaint;
     ++failures_;
   }
+  if (failure) std::rethrow_exception(failure);
   if (hooks_.progress && !sequence_.plan.empty()) report(sequence_.plan.back());
 }
 

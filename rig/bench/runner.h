@@ -59,7 +59,7 @@ class Runner {
   void judge(const PlannedStep& step, const RecordingRow& row, Measured& measured) const;
   void commit(const PlannedStep& step, StepOutcome outcome, const std::string& message, std::int64_t started,
               Measured measured);
-  void tear_down(bool aborted);
+  void tear_down(bool aborted);  // throws what the store could not take, once all is safe
   void report(const PlannedStep& step);
   double read(const PlannedStep& step);
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::rig::bench {
@@ -63,8 +64,11 @@ const char* name_of(StepOutcome outcome) {
 namespace {
 
 [[noreturn]] void refuse(sqlite3* database) {
-  throw UserError(fmt::format("{}: {}: expected a bench store", sqlite3_db_filename(database, "main"),
-                              sqlite3_errmsg(database)));
+  const std::string file = sqlite3_db_filename(database, "main"), why = sqlite3_errmsg(database);
+  const int result = sqlite3_errcode(database) & 0xff;  // without what extends it
+  if (result == SQLITE_FULL || result == SQLITE_IOERR || result == SQLITE_NOMEM)
+    throw std::runtime_error(fmt::format("{}: not everything could be written: {}", file, why));
+  throw UserError(fmt::format("{}: {}: expected a bench store", file, why));
 }
 
 }  // namespace
@@ -177,7 +181,7 @@ Store Store::create(const std::filesystem::path& file, const RunInfo& info) {
         .step();
     store.execute("COMMIT; PRAGMA journal_mode = WAL;");
   }
-  std::filesystem::rename(partial, file);
+  rename_whole(partial, file);
   return open(file);
 }
 

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,7 +25,9 @@ struct Program {
   pid_t pid;
   std::filesystem::path output;
 
-  Program(const std::vector<std::string>& arguments, std::filesystem::path into) : pid(-1), output(std::move(into)) {
+  // largest_file: in bytes; what would be larger is not written.
+  Program(const std::vector<std::string>& arguments, std::filesystem::path into, rlim_t largest_file = RLIM_INFINITY)
+      : pid(-1), output(std::move(into)) {
     std::vector<char*> list = {const_cast<char*>(WAVERIG_PROGRAM)};
     for (const std::string& a : arguments) list.push_back(const_cast<char*>(a.c_str()));
     list.push_back(nullptr);
@@ -33,6 +36,9 @@ struct Program {
     const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     ::dup2(file, 1);
     ::dup2(file, 2);
+    if (largest_file != RLIM_INFINITY) ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{largest_file, largest_file};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
     ::execv(list[0], list.data());
     ::_exit(127);
   }
@@ -161,6 +167,19 @@ TEST(CalibrationsProgram, ListsShowsAndComparesWhatTheBenchKept) {
   EXPECT_EQ(same, 0) << nothing;
   const auto [unknown, complaint] = call({"show", "nobody"});
   EXPECT_EQ(unknown, 2) << complaint;
+}
+
+// A disk that takes no more: of the sequence's files, of the store, in the midst of the run.
+TEST(BenchProgram, AFullDiskIsNoBadInput) {
+  const Bench bench;
+  for (const rlim_t bytes : {2'000, 20'000, 60'000, 400'000}) {
+    const std::string name = "out" + std::to_string(bytes);
+    Program program(bench.arguments(name), bench.files.out(name + ".txt"), bytes);
+    EXPECT_EQ(program.wait(), 1) << program.said();
+    const std::string said = program.said();
+    EXPECT_NE(said.find("waverig: " + bench.files.out(name).string()), std::string::npos) << said;
+    EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
+  }
 }
 
 struct Said {

@@ -2,6 +2,8 @@
 #include "rig/bench/runner.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <numeric>
@@ -259,6 +261,50 @@ TEST(Runner, StoppedAtAnyMomentItEndsSafely) {
     EXPECT_TRUE(run.safe()) << i << ": " << outcome;
     for (const StepRow& row : run.store.steps()) EXPECT_NE(row.outcome, StepOutcome::kFailed) << row.what << ": " << row.message;
   }
+}
+
+// A disk that is full from some step on: the store says so, after everything is safe.
+TEST(Runner, AStoreThatTakesNoMoreEndsTheRunSafely) {
+  for (const int full_at : {30, 60, 90}) {
+    OpenRun run;
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const auto ignored = ::signal(SIGXFSZ, SIG_IGN);
+    RunnerHooks hooks;
+    int steps = 0;
+    hooks.progress = [&](const Progress&) {
+      const rlimit none{1, before.rlim_max};
+      if (++steps == full_at) ::setrlimit(RLIMIT_FSIZE, &none);
+    };
+    Runner runner(run.sequence, run.reactor, run.store, hooks);
+    try {
+      const std::string outcome = runner.run(false);
+      ADD_FAILURE() << outcome;
+    } catch (const UserError& error) {
+      ADD_FAILURE() << error.what();
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("bench.sqlite: not everything could be written"), std::string::npos)
+          << error.what();
+    }
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    ::signal(SIGXFSZ, ignored);
+    run.reactor.sleep_until(run.reactor.now() + 60'000'000);
+    EXPECT_TRUE(run.safe()) << full_at;
+  }
+}
+
+// As the live picture of a run where its place is lost: what watches a run does not keep it from its safe end.
+TEST(Runner, WhoWatchesARunDoesNotStopItsSafeEnd) {
+  OpenRun run;
+  RunnerHooks hooks;
+  int steps = 0;
+  hooks.progress = [&](const Progress&) {
+    if (++steps >= 60) throw std::runtime_error("no picture");
+  };
+  Runner runner(run.sequence, run.reactor, run.store, hooks);
+  EXPECT_THROW(runner.run(false), std::runtime_error);
+  run.reactor.sleep_until(run.reactor.now() + 60'000'000);
+  EXPECT_TRUE(run.safe());
 }
 
 TEST(Sequence, RefusesWhatCannotWorkWithOneSentence) {
