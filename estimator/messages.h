@@ -78,6 +78,7 @@ inline sea_t message_of(const SeaState& s) {
   m.duration_s = s.duration_s;
   m.hm0_m = s.hm0_m;
   m.hm0_sigma_m = s.hm0_sigma_m;
+  m.hm0_systematic_sigma_m = s.hm0_systematic_sigma_m;
   m.tp_s = s.tp_s;
   m.tm01_s = s.tm01_s;
   m.tm02_s = s.tm02_s;
@@ -94,8 +95,9 @@ inline sea_t message_of(const SeaState& s) {
 }
 
 inline SeaState sea_of(const sea_t& m) {
-  return {m.utime,  m.seq,    m.duration_s, m.hm0_m,  m.hm0_sigma_m, m.tp_s, m.tm01_s, m.tm02_s, m.tm_10_s, m.h13_m,
-          m.h110_m, m.hmax_m, m.mean_direction_rad, m.spread_rad, m.peak_direction_rad, m.check_factor, m.flags};
+  return {m.utime,   m.seq,    m.duration_s, m.hm0_m,  m.hm0_sigma_m,        m.hm0_systematic_sigma_m,
+          m.tp_s,    m.tm01_s, m.tm02_s,     m.tm_10_s, m.h13_m,             m.h110_m,
+          m.hmax_m,  m.mean_direction_rad,   m.spread_rad, m.peak_direction_rad, m.check_factor, m.flags};
 }
 
 }  // namespace waverig::estimator

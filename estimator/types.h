@@ -46,13 +46,15 @@ struct Wave {
   std::int32_t flags = 0;
 };
 
-// Spectral sea state of a record or block, as in sea_t. kUnknown where not estimated.
+// Spectral sea state of a record or block, as in sea_t. kUnknown where not estimated; an unknown part of
+// hm0_sigma_m is all of it.
 struct SeaState {
   std::int64_t start_utime = 0;
   std::int64_t seq = 0;
-  double duration_s = kUnknown, hm0_m = kUnknown, hm0_sigma_m = kUnknown, tp_s = kUnknown, tm01_s = kUnknown,
-         tm02_s = kUnknown, tm_10_s = kUnknown, h13_m = kUnknown, h110_m = kUnknown, hmax_m = kUnknown,
-         mean_direction_rad = kUnknown, spread_rad = kUnknown, peak_direction_rad = kUnknown, check_factor = kUnknown;
+  double duration_s = kUnknown, hm0_m = kUnknown, hm0_sigma_m = kUnknown, hm0_systematic_sigma_m = kUnknown,
+         tp_s = kUnknown, tm01_s = kUnknown, tm02_s = kUnknown, tm_10_s = kUnknown, h13_m = kUnknown,
+         h110_m = kUnknown, hmax_m = kUnknown, mean_direction_rad = kUnknown, spread_rad = kUnknown,
+         peak_direction_rad = kUnknown, check_factor = kUnknown;
   std::int32_t flags = 0;
 };
 

@@ -54,7 +54,10 @@ void CellPooling::MeanSea::add(const JudgedSea& judged) {
   const estimator::SeaState& s = judged.sea;
   duration.add(s.duration_s);
   hm0.add(s.hm0_m);
-  hm0_variance.add(s.hm0_sigma_m * s.hm0_sigma_m);
+  const double variance_m2 = s.hm0_sigma_m * s.hm0_sigma_m,
+               systematic_m2 = s.hm0_systematic_sigma_m * s.hm0_systematic_sigma_m;
+  hm0_variance.add(variance_m2);
+  hm0_systematic.add(std::isfinite(systematic_m2) ? std::min(systematic_m2, variance_m2) : variance_m2);
   tp.add(s.tp_s);
   tm01.add(s.tm01_s);
   tm02.add(s.tm02_s);
@@ -79,7 +82,10 @@ JudgedSea CellPooling::MeanSea::value() const {
   estimator::SeaState& s = judged.sea;
   s.duration_s = duration.value();
   s.hm0_m = hm0.value();
-  s.hm0_sigma_m = std::sqrt(hm0_variance.value() / std::max(1.0, hm0_variance.count));
+  // More records lessen chance alone: what the sensor does wrong it does wrong in all of them.
+  const double chance_m2 = (hm0_variance.value() - hm0_systematic.value()) / std::max(1.0, hm0_variance.count);
+  s.hm0_sigma_m = std::sqrt(hm0_systematic.value() + chance_m2);
+  s.hm0_systematic_sigma_m = std::sqrt(hm0_systematic.value());
   s.tp_s = tp.value();
   s.tm01_s = tm01.value();
   s.tm02_s = tm02.value();

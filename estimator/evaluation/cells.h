@@ -39,7 +39,7 @@ class CellPooling {
     double lag_s() const;
   };
   struct MeanSea {
-    Mean duration, hm0, hm0_variance, tp, tm01, tm02, tm_10, h13, h110, hmax, spread, check, true_hm0,
+    Mean duration, hm0, hm0_variance, hm0_systematic, tp, tm01, tm02, tm_10, h13, h110, hmax, spread, check, true_hm0,
         true_tm02, true_spread, true_check;
     MeanAngle direction, peak_direction, true_direction;
     std::int32_t flags = 0;

@@ -182,6 +182,7 @@ void fields(auto& a, Is<JudgedSea> auto& judged) {
   a("duration_s", s.duration_s);
   a("hm0_m", s.hm0_m);
   a("hm0_sigma_m", s.hm0_sigma_m);
+  a("hm0_systematic_sigma_m", s.hm0_systematic_sigma_m);
   a("tp_s", s.tp_s);
   a("tm01_s", s.tm01_s);
   a("tm02_s", s.tm02_s);

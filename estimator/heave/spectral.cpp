@@ -217,14 +217,15 @@ void set_heights(std::vector<double> heights, SeaState& sea) {
 }
 
 // Of Hm0 = 4 sqrt(mean z^2): an error e of heave with the stated sigma, uncorrelated with it over as many
-// waves as there are; the systematic part goes with the heave itself.
-double hm0_sigma(const SmoothedRecord& smoothed, const SensorKnowledge& sensor, const SeaState& sea) {
+// waves as there are; the systematic part goes with the heave itself, in all records of the sensor.
+void set_hm0_sigma(const SmoothedRecord& smoothed, const SensorKnowledge& sensor, SeaState& sea) {
   double variance = 0;
   for (const HeaveSample& h : smoothed.heave) variance += square(h.heave_sigma_m);
   variance /= static_cast<double>(smoothed.heave.size());
   const double systematic = systematic_variance_m2(smoothed.sea, smoothed.motion, sensor);
   const double waves = std::max(1.0, sea.duration_s / sea.tm02_s);
-  return 4 * std::sqrt(systematic + std::max(variance - systematic, 0.0) / waves);
+  sea.hm0_sigma_m = 4 * std::sqrt(systematic + std::max(variance - systematic, 0.0) / waves);
+  sea.hm0_systematic_sigma_m = 4 * std::sqrt(systematic);
 }
 
 }  // namespace
@@ -245,7 +246,7 @@ SeaState sea_state(const Record& record, const SmoothedRecord& smoothed, const S
   if (!spectrum) return sea;
   set_moments(*spectrum, sea);
   if (sea.duration_s > kFewWaves * sea.tm02_s) sea.flags = 0;
-  sea.hm0_sigma_m = hm0_sigma(smoothed, sensor, sea);
+  set_hm0_sigma(smoothed, sensor, sea);
   return sea;
 }
 

@@ -12,8 +12,9 @@ namespace {
 
 using estimator::Spectral;
 
-estimator::SeaState run_spectral(const std::vector<estimator::ImuSample>& samples) {
-  Spectral method{estimator::MethodSettings{}};
+estimator::SeaState run_spectral(const std::vector<estimator::ImuSample>& samples,
+                                 const estimator::MethodSettings& settings = {}) {
+  Spectral method{settings};
   const Collector out = run(method, samples);
   EXPECT_EQ(out.seas.size(), 1u);
   return out.seas.at(0);
@@ -61,6 +62,21 @@ TEST(Spectral, StatesAnHm0SigmaThatHolds) {
   }
   EXPECT_LT(squared / kSeas, 2.5);
   EXPECT_GT(squared / kSeas, 0.05);
+}
+
+// Of a sensor whose scale is known within 1 %, the Hm0 of every record is: a longer one lessens the rest alone.
+TEST(Spectral, TellsWhichPartOfItsSigmaIsTheSensors) {
+  estimator::MethodSettings settings;
+  settings.sensor.accel_scale_sigma = 0.01;
+  double rest_m = 1;
+  for (const double duration_s : {600.0, 2400.0}) {
+    const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = duration_s}, 3);
+    const estimator::SeaState sea = run_spectral(record.samples, settings);
+    EXPECT_NEAR(sea.hm0_systematic_sigma_m / sea.hm0_m, 0.01, 5e-4) << duration_s;
+    const double now_m = std::sqrt(square(sea.hm0_sigma_m) - square(sea.hm0_systematic_sigma_m));
+    EXPECT_LT(now_m, 0.6 * rest_m) << duration_s;
+    rest_m = now_m;
+  }
 }
 
 TEST(Spectral, CountsTheWavesOfTheSmoothedHeave) {
