@@ -90,6 +90,27 @@ TEST(RotationFit, RecoversTheUnitWithinItsUncertaintyDespiteTheHand) {
   EXPECT_LT(chi, 3);
 }
 
+// White noise of the accelerometer alone: squared error over stated variance. Neighbours share half their samples,
+// so that two are counted as one; counted as independent it would be twice as much. It is below one, since a turning
+// unit shows neighbours different sides of the unknowns.
+TEST(RotationFit, ItsUncertaintyIsThatOfOverlappingWindows) {
+  double chi = 0;
+  constexpr int kRuns = 40, kUnknowns = 9;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const AccelerometerCalibration found =
+        fit_rotation(turned_by_hand(200, 0, 0.3, Vector3d::Zero(), seed), kG).calibration;
+    const Matrix3d dM = found.M - some_unit().M;
+    const Vector3d db = found.b_mps2 - some_unit().b_mps2;
+    for (int i = 0; i < 3; ++i) {
+      chi += db[i] * db[i] / found.covariance(9 + i, 9 + i);
+      for (int j = i; j < 3; ++j) chi += dM(i, j) * dM(i, j) / found.covariance(3 * i + j, 3 * i + j);
+    }
+  }
+  chi /= kRuns * kUnknowns;
+  EXPECT_GT(chi, 0.55);
+  EXPECT_LT(chi, 0.95);
+}
+
 TEST(RotationFit, AFewKnocksHardlyBendIt) {
   auto samples = turned_by_hand(200, 0, 0, Vector3d::Zero(), 1);
   for (std::size_t begin = 2000; begin < samples.size(); begin += 3000)
