@@ -26,10 +26,11 @@ std::string escaped_channel(std::string_view channel) {
 Bus::Bus(const std::string& url) : lcm_(url), in_process_(url.starts_with("memq:")) {
   // A failed subscribe() of LCM 1.3.1 returns garbage: ask for the file descriptor first.
   if (!lcm_.good() || lcm_.getFileno() < 0)
-    throw UserError(fmt::format(
-        "--bus: cannot open \"{}\": expected memq://, file://LOG or udpm://GROUP:PORT?ttl=0 on a network with a "
-        "multicast route",
-        url));
+    throw UserError(
+        fmt::format("--bus: cannot open \"{}\": expected memq://, file://LOG or udpm://GROUP:PORT?ttl=0 on a "
+                    "network with a "
+                    "multicast route",
+                    url));
 }
 
 Bus::~Bus() = default;
@@ -42,7 +43,8 @@ void Bus::publish_raw(std::string_view channel, const void* data, std::size_t si
 }
 
 bool Bus::surely_heard(std::string_view channel) const {
-  return hears_all_ || std::find(plain_channels_.begin(), plain_channels_.end(), channel) != plain_channels_.end();
+  return hears_all_ ||
+         std::find(plain_channels_.begin(), plain_channels_.end(), channel) != plain_channels_.end();
 }
 
 void Bus::subscribe_raw(const std::string& pattern, RawHandler handler) {
@@ -53,8 +55,10 @@ void Bus::subscribe_raw(const std::string& pattern, RawHandler handler) {
 void Bus::add_subscription(const std::string& pattern, RawHandler handler) {
   subscriptions_.push_back(std::make_unique<Subscription>(Subscription{this, std::move(handler)}));
   lcm_t* lcm = lcm_.getUnderlyingLCM();
-  lcm_subscription_t* subscription = lcm_subscribe(lcm, pattern.c_str(), &Bus::dispatch, subscriptions_.back().get());
-  if (subscription == nullptr) throw std::runtime_error(fmt::format("LCM refused to subscribe to {}", pattern));
+  lcm_subscription_t* subscription =
+      lcm_subscribe(lcm, pattern.c_str(), &Bus::dispatch, subscriptions_.back().get());
+  if (subscription == nullptr)
+    throw std::runtime_error(fmt::format("LCM refused to subscribe to {}", pattern));
   lcm_subscription_set_queue_capacity(subscription, 0);
 }
 

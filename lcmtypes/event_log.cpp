@@ -13,7 +13,8 @@
 namespace waverig {
 namespace {
 
-// Layout of an event, big-endian: sync, event number, microseconds, channel length, data length, channel, data.
+// Layout of an event, big-endian: sync, event number, microseconds, channel length, data length, channel,
+// data.
 constexpr std::uint32_t kSync = 0xEDA1DA01;
 constexpr std::size_t kHeaderSize = 4 + 8 + 8 + 4 + 4;
 constexpr std::size_t kMaxChannel = 255;      // LCM_MAX_CHANNEL_NAME_LENGTH is 63; foreign logs may hold more
@@ -22,7 +23,8 @@ constexpr std::size_t kFileBuffer = 1 << 18;
 
 template <class T>
 void put(std::uint8_t*& at, T value) {
-  for (std::size_t i = sizeof(T); i-- > 0;) *at++ = static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i));
+  for (std::size_t i = sizeof(T); i-- > 0;)
+    *at++ = static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i));
 }
 
 template <class T>
@@ -58,7 +60,8 @@ void EventLogWriter::close() {
   std::FILE* file = file_.release();
   const bool failed = std::ferror(file) != 0;
   if (std::fclose(file) != 0 || failed)
-    throw std::runtime_error(fmt::format("{}: not everything could be written: {}", path_.string(), std::strerror(errno)));
+    throw std::runtime_error(
+        fmt::format("{}: not everything could be written: {}", path_.string(), std::strerror(errno)));
 }
 
 EventLogReader::EventLogReader(const std::filesystem::path& path)
@@ -73,17 +76,19 @@ bool EventLogReader::next(LogEvent& event) {
   if (offset_ == size_) return false;
   std::uint8_t header[kHeaderSize];
   const auto broken = [&](const char* what) {
-    return UserError(fmt::format("{}: byte {}: {}; expected a whole LCM event log of {} bytes", path_.string(), offset_,
-                                 what, size_));
+    return UserError(fmt::format("{}: byte {}: {}; expected a whole LCM event log of {} bytes",
+                                 path_.string(), offset_, what, size_));
   };
-  if (std::fread(header, 1, sizeof header, file_.get()) != sizeof header) throw broken("truncated inside an event's header");
+  if (std::fread(header, 1, sizeof header, file_.get()) != sizeof header)
+    throw broken("truncated inside an event's header");
   const std::uint8_t* at = header;
   if (get<std::uint32_t>(at) != kSync) throw broken("no event begins here (sync word missing)");
   at += 8;  // the event number carries nothing that the order does not
   event.utime = get<std::int64_t>(at);
   const auto channel_size = static_cast<std::size_t>(get<std::uint32_t>(at));
   const auto data_size = static_cast<std::size_t>(get<std::uint32_t>(at));
-  if (channel_size > kMaxChannel || data_size > kMaxPayload) throw broken("an event's length is not plausible");
+  if (channel_size > kMaxChannel || data_size > kMaxPayload)
+    throw broken("an event's length is not plausible");
   event.channel.resize(channel_size);
   event.data.resize(data_size);
   if (std::fread(event.channel.data(), 1, channel_size, file_.get()) != channel_size ||

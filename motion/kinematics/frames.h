@@ -13,10 +13,10 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-inline constexpr double kDegree = std::numbers::pi / 180.0;        // rad
-inline constexpr double kStandardGravity = 9.80665;                // m/s^2, CGPM 1901; the unit "g"
-inline constexpr double kMicrosecond = 1e-6;                       // s
-inline constexpr double kCentimetre = 1e-2;                        // m
+inline constexpr double kDegree = std::numbers::pi / 180.0;  // rad
+inline constexpr double kStandardGravity = 9.80665;          // m/s^2, CGPM 1901; the unit "g"
+inline constexpr double kMicrosecond = 1e-6;                 // s
+inline constexpr double kCentimetre = 1e-2;                  // m
 
 struct Euler {
   double roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
@@ -24,7 +24,8 @@ struct Euler {
 
 // C_b^n = Rz(psi) Ry(theta) Rx(phi), REFERENCE section 0.
 inline Quaterniond quaternion_of(const Euler& e) {
-  return Quaterniond(Eigen::AngleAxisd(e.yaw_rad, Vector3d::UnitZ()) * Eigen::AngleAxisd(e.pitch_rad, Vector3d::UnitY()) *
+  return Quaterniond(Eigen::AngleAxisd(e.yaw_rad, Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(e.pitch_rad, Vector3d::UnitY()) *
                      Eigen::AngleAxisd(e.roll_rad, Vector3d::UnitX()));
 }
 

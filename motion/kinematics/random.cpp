@@ -22,8 +22,8 @@ std::uint64_t fnv1a(std::string_view text) {
 
 // Ziggurat of 128 boxes of equal area under exp(-x^2/2); Doornik 2005, "ZIGNOR".
 constexpr int kBoxes = 128;
-constexpr double kTail = 3.442619855899;        // where the tail begins
-constexpr double kArea = 9.91256303526217e-3;   // of each box
+constexpr double kTail = 3.442619855899;       // where the tail begins
+constexpr double kArea = 9.91256303526217e-3;  // of each box
 
 struct Ziggurat {
   std::array<double, kBoxes + 1> x{};

@@ -10,9 +10,9 @@ class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view name);
   std::uint64_t bits();
-  double uniform();                              // [0, 1)
+  double uniform();  // [0, 1)
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  double gaussian();                             // mean 0, standard deviation 1 (ziggurat: no libm in the common path)
+  double gaussian();  // mean 0, standard deviation 1 (ziggurat: no libm in the common path)
   double gaussian(double sigma) { return sigma * gaussian(); }
 
  private:

@@ -1,4 +1,5 @@
-// What stands in the scene at an instant, as triangles: the rig or the buoy, the floor and the water. Frame of mesh.h.
+// What stands in the scene at an instant, as triangles: the rig or the buoy, the floor and the water. Frame
+// of mesh.h.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -20,7 +20,7 @@ struct CalibrationRunSettings {
   std::int64_t begin_utime = 0;
   std::string sensor_id = "simulated";
   estimator::SixPositionModel model = estimator::SixPositionModel::kBent;
-  std::optional<FrontEndChoice> front_end;   // applied to the readings, as it will be in use
+  std::optional<FrontEndChoice> front_end;  // applied to the readings, as it will be in use
 };
 
 struct CalibrationRun {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kHead = 8;  // columns, rows
 constexpr std::uint32_t kColumnsMax = 1000, kRowsMax = 100'000'000;
-constexpr std::size_t kDeflateMost = 1040;   // bytes out of one: a header that claims more is believed no memory
+constexpr std::size_t kDeflateMost =
+    1040;  // bytes out of one: a header that claims more is believed no memory
 
 }  // namespace
 

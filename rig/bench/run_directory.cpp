@@ -44,8 +44,8 @@ std::string keep_files(const Sequence& sequence, const fs::path& out) {
     fs::create_directories(copy.parent_path(), error);
     if (!error) fs::copy_file(file, copy, fs::copy_options::overwrite_existing, error);
     if (error)
-      refuse_place(error, fmt::format("{}: {}: expected to write a copy of {}", copy.string(), error.message(),
-                                      file.string()));
+      refuse_place(error, fmt::format("{}: {}: expected to write a copy of {}", copy.string(),
+                                      error.message(), file.string()));
   }
   return (kSequenceDirectory / files.front().lexically_relative(common)).string();
 }

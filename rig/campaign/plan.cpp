@@ -12,7 +12,7 @@
 namespace waverig::rig {
 namespace {
 
-constexpr std::int64_t kPause_utime = 60 * 1000000LL;   // between runs: a set-up step of the arm
+constexpr std::int64_t kPause_utime = 60 * 1000000LL;  // between runs: a set-up step of the arm
 
 motion::EnvelopeSettings envelope_of(const CampaignSettings& settings) {
   const AccelerometerSettings accelerometer = unit_settings(settings).accelerometer;
@@ -24,7 +24,8 @@ motion::EnvelopeSettings envelope_of(const CampaignSettings& settings) {
 }
 
 SettingPlan plan_sea(const CampaignSettings& campaign, const Setting& setting) {
-  SettingPlan plan{.setting = setting, .judgements = {}, .duration_s = campaign.sweep.profile_of(setting).steady_s};
+  SettingPlan plan{
+      .setting = setting, .judgements = {}, .duration_s = campaign.sweep.profile_of(setting).steady_s};
   if (const auto steep = motion::too_steep(setting.period_s, setting.height_m)) {
     plan.judgements.push_back({motion::EnvelopeReason::kBreaks, motion::Verdict::kRefuse, *steep});
     plan.refused = true;
@@ -36,8 +37,8 @@ SettingPlan plan_setting(const CampaignSettings& campaign, const Setting& settin
   if (campaign.sweep.mover == Mover::kSea) return plan_sea(campaign, setting);
   SettingPlan plan{.setting = setting, .judgements = {}};
   const motion::RotationProfile profile(campaign.sweep.profile_of(setting));
-  plan.judgements =
-      motion::judge(setting.period_s, setting.height_m, profile.settings().ramp_periods, envelope_of(campaign));
+  plan.judgements = motion::judge(setting.period_s, setting.height_m, profile.settings().ramp_periods,
+                                  envelope_of(campaign));
   plan.refused = std::any_of(plan.judgements.begin(), plan.judgements.end(),
                              [](const auto& j) { return j.verdict == motion::Verdict::kRefuse; });
   plan.waves = profile.steady_periods();
@@ -56,8 +57,10 @@ CampaignPlan plan_campaign(const CampaignSettings& campaign) {
     const SettingPlan& planned = plan.settings.back();
     for (int repeat = 0; repeat < campaign.sweep.repeats; ++repeat, ++index) {
       if (planned.refused) continue;
-      plan.runs.push_back({fmt::format("T{:05.2f}s_H{:05.1f}cm_r{}", setting.period_s, setting.height_m / kCentimetre, repeat + 1),
-                           setting, repeat, derived_seed(campaign.seed, "run", index), utime, planned.duration_s});
+      plan.runs.push_back({fmt::format("T{:05.2f}s_H{:05.1f}cm_r{}", setting.period_s,
+                                       setting.height_m / kCentimetre, repeat + 1),
+                           setting, repeat, derived_seed(campaign.seed, "run", index), utime,
+                           planned.duration_s});
       plan.duration_s += planned.duration_s;
       utime += static_cast<std::int64_t>(std::ceil(planned.duration_s)) * 1000000 + kPause_utime;
     }
@@ -70,24 +73,26 @@ void refuse_impossible(const CampaignSettings& campaign, const CampaignPlan& pla
   for (const SettingPlan& planned : plan.settings)
     for (const auto& judgement : planned.judgements)
       if (judgement.verdict == motion::Verdict::kRefuse)
-        throw UserError(fmt::format("{}: sweep.heights_cm = {:g}: {}; expected a height that can be run, or "
-                                    "sweep.outside_envelope = \"skip\"",
-                                    campaign.sweep.settings_place, planned.setting.height_m / kCentimetre,
-                                    judgement.sentence));
+        throw UserError(fmt::format(
+            "{}: sweep.heights_cm = {:g}: {}; expected a height that can be run, or "
+            "sweep.outside_envelope = \"skip\"",
+            campaign.sweep.settings_place, planned.setting.height_m / kCentimetre, judgement.sentence));
 }
 
 std::string described(const CampaignSettings& campaign, const CampaignPlan& plan) {
-  std::string text = fmt::format("{}: {} runs of {} settings, {:.1f} h on a rig, methods {}\n\n{:>8} {:>9} {:>8} {:>6} {:>10}  {}\n",
-                                 campaign.name, plan.runs.size(), plan.settings.size(), plan.duration_s / 3600,
-                                 fmt::join(campaign.methods, ", "), "period s", "height cm", "repeats", "waves", "duration s", "remarks");
+  std::string text = fmt::format(
+      "{}: {} runs of {} settings, {:.1f} h on a rig, methods {}\n\n{:>8} {:>9} {:>8} {:>6} {:>10}  {}\n",
+      campaign.name, plan.runs.size(), plan.settings.size(), plan.duration_s / 3600,
+      fmt::join(campaign.methods, ", "), "period s", "height cm", "repeats", "waves", "duration s",
+      "remarks");
   for (const SettingPlan& p : plan.settings) {
     std::string remarks = p.judgements.empty() ? "runs" : "";
     for (const auto& j : p.judgements)
       remarks += fmt::format("{}{}: {}", remarks.empty() ? "" : "; ",
                              j.verdict == motion::Verdict::kRefuse ? "REFUSED" : "warning", j.sentence);
-    text += fmt::format("{:8.1f} {:9.1f} {:8} {:>6} {:10.0f}  {}\n", p.setting.period_s, p.setting.height_m / kCentimetre,
-                        p.refused ? 0 : campaign.sweep.repeats, p.waves > 0 ? fmt::to_string(p.waves) : "sea",
-                        p.duration_s, remarks);
+    text += fmt::format("{:8.1f} {:9.1f} {:8} {:>6} {:10.0f}  {}\n", p.setting.period_s,
+                        p.setting.height_m / kCentimetre, p.refused ? 0 : campaign.sweep.repeats,
+                        p.waves > 0 ? fmt::to_string(p.waves) : "sea", p.duration_s, remarks);
   }
   return text;
 }
@@ -97,7 +102,8 @@ std::vector<RunPlan> runs_of_shard(const CampaignPlan& plan, const Shard& shard)
   std::size_t setting = 0;
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     if (i > 0 && plan.runs[i].repeat <= plan.runs[i - 1].repeat) ++setting;
-    if (static_cast<int>(setting % static_cast<std::size_t>(shard.of)) == shard.number - 1) runs.push_back(plan.runs[i]);
+    if (static_cast<int>(setting % static_cast<std::size_t>(shard.of)) == shard.number - 1)
+      runs.push_back(plan.runs[i]);
   }
   return runs;
 }

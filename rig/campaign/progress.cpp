@@ -8,7 +8,10 @@
 namespace waverig::rig {
 
 Progress::Progress(std::string what, std::size_t total)
-    : what_(std::move(what)), total_(total), terminal_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()) {
+    : what_(std::move(what)),
+      total_(total),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()) {
   if (terminal_ && total_ > 0) draw("");
 }
 
@@ -28,8 +31,10 @@ void Progress::draw(const std::string& item) const {
   std::string bar;
   for (std::size_t i = 0; i < kWidth; ++i) bar += i < filled ? "█" : "░";
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const std::string remaining =
-      done_ == 0 ? "" : fmt::format("{:.0f} s left", elapsed_s / static_cast<double>(done_) * static_cast<double>(total_ - done_));
+  const std::string remaining = done_ == 0
+                                    ? ""
+                                    : fmt::format("{:.0f} s left", elapsed_s / static_cast<double>(done_) *
+                                                                       static_cast<double>(total_ - done_));
   fmt::print(stderr, "\r\033[K{} {} {}/{}  {}  {}", what_, bar, done_, total_, remaining, item);
   std::fflush(stderr);
 }

@@ -12,7 +12,7 @@ class Progress {
  public:
   Progress(std::string what, std::size_t total);
   ~Progress();
-  void done(const std::string& item);   // one more is done; any thread
+  void done(const std::string& item);  // one more is done; any thread
 
  private:
   void draw(const std::string& item) const;

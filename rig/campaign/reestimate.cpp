@@ -14,18 +14,20 @@ class Collector : public estimator::Output {
 };
 
 UnitCounts counts_of(const evaluation::RawSample& raw) {
-  return {raw.utime, raw.seq, raw.accel_positive, raw.accel_negative, raw.gyro, raw.mag, raw.temperature, raw.flags};
+  return {raw.utime, raw.seq, raw.accel_positive, raw.accel_negative,
+          raw.gyro,  raw.mag, raw.temperature,    raw.flags};
 }
 
 }  // namespace
 
-Reestimated estimate_uncalibrated(const evaluation::RunRecord& run, const CampaignUnit& unit, const std::string& method) {
+Reestimated estimate_uncalibrated(const evaluation::RunRecord& run, const CampaignUnit& unit,
+                                  const std::string& method) {
   Reestimated result;
   Collector collector(result);
   Acquisition acquisition(unit.sensitivities);
   const auto estimate = estimator::make_method(method, unit.methods);
   for (const evaluation::RawSample& raw : run.raw) {
-    if (raw.utime < run.start_utime) continue;   // before the record
+    if (raw.utime < run.start_utime) continue;  // before the record
     result.imu.push_back(acquisition.sample_of(counts_of(raw)));
     estimate->add(result.imu.back(), collector);
   }

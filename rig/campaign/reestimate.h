@@ -9,11 +9,12 @@
 namespace waverig::rig {
 
 struct Reestimated {
-  std::vector<estimator::ImuSample> imu;       // by nominal sensitivities
+  std::vector<estimator::ImuSample> imu;  // by nominal sensitivities
   std::vector<estimator::HeaveSample> heave;
   std::vector<estimator::Wave> waves;
 };
 
-Reestimated estimate_uncalibrated(const evaluation::RunRecord& run, const CampaignUnit& unit, const std::string& method);
+Reestimated estimate_uncalibrated(const evaluation::RunRecord& run, const CampaignUnit& unit,
+                                  const std::string& method);
 
 }  // namespace waverig::rig

@@ -61,7 +61,10 @@ void take_file(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 ResultsDirectory::ResultsDirectory(const fs::path& directory, Mode mode, bool resumes)
-    : directory_(directory), place_(place_of(directory)), working_(beside(place_, ".partial")), resumes_(resumes) {
+    : directory_(directory),
+      place_(place_of(directory)),
+      working_(beside(place_, ".partial")),
+      resumes_(resumes) {
   if (fs::exists(place_) && !fs::is_directory(place_))
     throw UserError(fmt::format("--out {}: is a file; expected a directory", directory_.string()));
   const bool finished = fs::exists(place_) && !fs::is_empty(place_);

@@ -1,4 +1,5 @@
-// One run of a campaign in embedded mode: every node in one process on one bus, virtual time, as fast as it goes.
+// One run of a campaign in embedded mode: every node in one process on one bus, virtual time, as fast as it
+// goes.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -15,12 +16,12 @@ namespace waverig::rig {
 // What a campaign finds out before its first run and every run uses.
 struct CampaignUnit {
   UnitSettings settings;
-  UnitParameters tested;                                  // the simulator's truth
+  UnitParameters tested;  // the simulator's truth
   Sensitivities sensitivities;
-  std::optional<FrontEndChoice> front_end;                // its own calibration, where the campaign names one
+  std::optional<FrontEndChoice> front_end;  // its own calibration, where the campaign names one
   bool calibrated = false;
   estimator::SensorCalibration calibration;
-  estimator::MethodSettings methods;                      // with what the calibration says of itself
+  estimator::MethodSettings methods;  // with what the calibration says of itself
 };
 
 // Records into log (no recording where it is empty) and returns one result a method.
@@ -29,7 +30,8 @@ std::vector<evaluation::RunResult> run_embedded(const CampaignSettings& campaign
                                                 const RunPlan& plan, const std::filesystem::path& log);
 
 // The parts of a run, for any mode.
-SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const CampaignUnit& unit, const RunPlan& plan);
+SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const CampaignUnit& unit,
+                                  const RunPlan& plan);
 motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPlan& plan);
 OrderedRun ordered_run(const RunPlan& plan);
 Acquisition acquisition_of(const CampaignUnit& unit);

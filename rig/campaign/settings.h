@@ -1,5 +1,5 @@
-// A campaign: what shall be set, on which rig, with which sensor, told by which methods. SI here; in the TOML file
-// every key that has a unit carries it in its name.
+// A campaign: what shall be set, on which rig, with which sensor, told by which methods. SI here; in the TOML
+// file every key that has a unit carries it in its name.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -26,19 +26,19 @@ struct Setting {
   double height_m = 0;
 };
 
-enum class Mover { kArm, kSea };                 // the rotating arm, or a buoy on an irregular sea
+enum class Mover { kArm, kSea };  // the rotating arm, or a buoy on an irregular sea
 
-enum class OutsideEnvelope { kRefuse, kSkip };   // what happens to settings that cannot be made or measured
+enum class OutsideEnvelope { kRefuse, kSkip };  // what happens to settings that cannot be made or measured
 
 struct SweepSettings {
   Mover mover = Mover::kArm;
-  std::vector<Setting> settings;                 // by period, then height; on a sea peak period and Hm0
-  std::string settings_place;                    // FILE:LINE of the heights, for complaints
+  std::vector<Setting> settings;  // by period, then height; on a sea peak period and Hm0
+  std::string settings_place;     // FILE:LINE of the heights, for complaints
   int repeats = 1;
-  double turn_per_repeat_rad = 0;                // of the pedestal between repeats
-  motion::ProfileSettings profile;               // of every run on the arm; the period is the setting's
-  int min_waves = 0;                           // of a steady part: longer than the profile's where that holds fewer
-  motion::SeaSettings sea;                       // of every run on a sea; Tp, Hm0 and seed are the run's
+  double turn_per_repeat_rad = 0;   // of the pedestal between repeats
+  motion::ProfileSettings profile;  // of every run on the arm; the period is the setting's
+  int min_waves = 0;                // of a steady part: longer than the profile's where that holds fewer
+  motion::SeaSettings sea;          // of every run on a sea; Tp, Hm0 and seed are the run's
   motion::FloatSettings buoy;
   OutsideEnvelope outside = OutsideEnvelope::kRefuse;
 
@@ -52,7 +52,7 @@ struct SensorChoice {
   double gyroscope_range_degps = 200;
   std::string magnetometer = "none";
   std::optional<double> board_iron_uT;  // hard iron per axis, standard deviation; else the part's own
-  bool aged = false;                             // since its calibration: HARDWARE drift added after it
+  bool aged = false;                    // since its calibration: HARDWARE drift added after it
 };
 
 // What a compass on the rig has to do with. Read where there is a magnetometer, and nowhere else.
@@ -74,7 +74,7 @@ struct CampaignSettings {
   Place rig_place;  // where the simulated rig stands, other where the laboratory errs
   MagneticSettings magnetic;
   RotatingArmSettings arm;
-  motion::EnvelopeSettings envelope;             // of the rig; the sensor's part is filled in from the sensor
+  motion::EnvelopeSettings envelope;  // of the rig; the sensor's part is filled in from the sensor
   SensorChoice sensor;
   bool calibrate = true;                         // six positions at the start
   CalibrationRunSettings calibration;            // with the front end's own, where the campaign names one
@@ -83,15 +83,16 @@ struct CampaignSettings {
   motion::AxisSettings axis;
   motion::SimulatedDriveSettings drive;
   estimator::MethodSettings estimator;
-  std::int64_t start_utime = 0;                  // of the first run, virtual time
+  std::int64_t start_utime = 0;  // of the first run, virtual time
 };
 
-// Where a results directory keeps the front end's calibration, beside the resolved settings, which name it there.
+// Where a results directory keeps the front end's calibration, beside the resolved settings, which name it
+// there.
 inline constexpr const char* kFrontEndFile = "front_end.json";
 
 struct Campaign {
   CampaignSettings settings;
-  std::string resolved;                          // TOML with every value, defaults included
+  std::string resolved;  // TOML with every value, defaults included
 };
 
 // Reads and checks a campaign. seed_override replaces the file's seed. Throws UserError.

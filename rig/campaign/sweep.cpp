@@ -83,8 +83,8 @@ CalibratedUnit calibrate(const CampaignSettings& campaign) {
   if (unit.settings.magnetometer) compass = calibrate_compass(campaign, unit, run.end_utime);
   run.calibration = unit.calibration;
   result.report_json = calibration_report(
-      run, true_calibration(unit.settings, fresh, unit.sensitivities, run.calibration.temperature_degC, settings.model,
-                            unit.front_end));
+      run, true_calibration(unit.settings, fresh, unit.sensitivities, run.calibration.temperature_degC,
+                            settings.model, unit.front_end));
   if (compass)
     result.report_json =
         with_compass_report(result.report_json, *compass, fresh.magnetometer, campaign.magnetic.field);
@@ -102,9 +102,10 @@ evaluation::CampaignResults run_campaign(const Campaign& campaign, const Calibra
     Progress progress("runs", runs.size());
     in_parallel(options.jobs, runs.size(), [&](std::size_t i) {
       const auto log = directory.runs() / (runs[i].name + ".lcm");
-      const auto judged = std::filesystem::exists(log)   // a log under its own name is whole: done before a resume
-                              ? evaluation::judge(evaluation::load_run(log), judge_settings(campaign.settings, unit, runs[i]))
-                              : run_embedded(campaign.settings, unit, runs[i], log);
+      const auto judged =
+          std::filesystem::exists(log)  // a log under its own name is whole: done before a resume
+              ? evaluation::judge(evaluation::load_run(log), judge_settings(campaign.settings, unit, runs[i]))
+              : run_embedded(campaign.settings, unit, runs[i], log);
       {
         const std::lock_guard lock(writing);
         for (const auto& of_method : judged) writer.add(of_method);
@@ -153,28 +154,30 @@ std::string direction_table(const evaluation::CampaignResults& results) {
 std::string known(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; }
 
 std::string regular_table(const evaluation::CampaignResults& results) {
-  std::string table = fmt::format("{:>8} {:>9}  {:<12} {:>6} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", "period s", "height cm",
-                                  "method", "waves", "mean cm", "error %", "std cm", "bound cm", "U(k=2)", "rmse cm");
+  std::string table =
+      fmt::format("{:>8} {:>9}  {:<12} {:>6} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", "period s", "height cm",
+                  "method", "waves", "mean cm", "error %", "std cm", "bound cm", "U(k=2)", "rmse cm");
   for (const auto& cell : results.cells) {
     const auto& s = cell.statistics;
     if (s.waves == 0 && tells_direction(cell)) continue;  // stands in the table of directions
-    table += fmt::format("{:8.1f} {:9.1f}  {:<12} {:6} {:9.2f} {:8.2f} {:8.2f} {:9.2f} {:>8} {:7.2f}\n", cell.period_s,
-                         cell.height_m / kCentimetre, cell.method, s.waves, s.mean_height_m / kCentimetre,
-                         s.error_rate_percent, s.std_m / kCentimetre, s.bound_std_m / kCentimetre,
-                         known(s.expanded_uncertainty_m / kCentimetre), s.rmse_m / kCentimetre);
+    table += fmt::format("{:8.1f} {:9.1f}  {:<12} {:6} {:9.2f} {:8.2f} {:8.2f} {:9.2f} {:>8} {:7.2f}\n",
+                         cell.period_s, cell.height_m / kCentimetre, cell.method, s.waves,
+                         s.mean_height_m / kCentimetre, s.error_rate_percent, s.std_m / kCentimetre,
+                         s.bound_std_m / kCentimetre, known(s.expanded_uncertainty_m / kCentimetre),
+                         s.rmse_m / kCentimetre);
   }
   return table;
 }
 
 std::string sea_table(const evaluation::CampaignResults& results) {
   const auto percent = [](double value, double of) { return 100 * (value / of - 1); };
-  std::string table =
-      fmt::format("{:>5} {:>7}  {:<12} {:>12} {:>12} {:>7} {:>9} {:>8} {:>12} {:>13}\n", "Tp s", "Hm0 cm", "method",
-                  "heave rms cm", "% of Hm0", "bound", "gain", "lag s", "Hm0 error %", "Tm02 error %");
+  std::string table = fmt::format("{:>5} {:>7}  {:<12} {:>12} {:>12} {:>7} {:>9} {:>8} {:>12} {:>13}\n",
+                                  "Tp s", "Hm0 cm", "method", "heave rms cm", "% of Hm0", "bound", "gain",
+                                  "lag s", "Hm0 error %", "Tm02 error %");
   for (const auto& cell : results.cells) {
-    table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:>7} {:9.4f} {:8.3f} {:>12} {:>13}\n", cell.period_s,
-                         cell.height_m / kCentimetre, cell.method, cell.heave_rmse_m / kCentimetre,
-                         100 * cell.heave_rmse_m / cell.true_hm0_m,
+    table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:>7} {:9.4f} {:8.3f} {:>12} {:>13}\n",
+                         cell.period_s, cell.height_m / kCentimetre, cell.method,
+                         cell.heave_rmse_m / kCentimetre, 100 * cell.heave_rmse_m / cell.true_hm0_m,
                          known(100 * cell.heave_bound_m / cell.true_hm0_m), cell.heave_gain, cell.heave_lag_s,
                          known(percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m)),
                          known(percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s)));

@@ -62,8 +62,9 @@ BenchOptions options_for(const BenchArguments& arguments) {
 void keep_scale_factors(const Sequence& sequence, const BenchArguments& arguments) {
   if (arguments.scale_factors.empty()) return;
   const estimator::FrontEndCalibration known = estimator::load_front_end_calibration(arguments.scale_factors);
-  for (const UnitDescription::Channel& c : sequence.laboratory.unit.channels) known.channel(c.name);   // refused now, not after a weekend
-  if (!arguments.resume && Store::begun(store_file(arguments.out))) return;                          // run_bench refuses
+  for (const UnitDescription::Channel& c : sequence.laboratory.unit.channels)
+    known.channel(c.name);  // refused now, not after a weekend
+  if (!arguments.resume && Store::begun(store_file(arguments.out))) return;  // run_bench refuses
   fs::create_directories(arguments.out);
   save(known, kept_scale_factors(arguments.out));
 }
@@ -73,15 +74,19 @@ int conclude(const Sequence& sequence, const BenchArguments& arguments, const Be
   const fs::path out = arguments.out;
   const Store store = Store::open(store_file(out));
   std::optional<estimator::FrontEndCalibration> known;
-  if (fs::exists(kept_scale_factors(out))) known = estimator::load_front_end_calibration(kept_scale_factors(out));
-  const std::optional<Analysis> analysis = result.complete ? analyse_run(sequence, store, known ? &*known : nullptr) : std::nullopt;
+  if (fs::exists(kept_scale_factors(out)))
+    known = estimator::load_front_end_calibration(kept_scale_factors(out));
+  const std::optional<Analysis> analysis =
+      result.complete ? analyse_run(sequence, store, known ? &*known : nullptr) : std::nullopt;
   std::vector<Verdict> verdicts;
   if (analysis) {
     verdicts = hold_against_limits(sequence, *analysis);
     save(analysis->calibration, out / "calibration.json");
     evaluation::write_atomically(out / "channels.csv", channels_csv(*analysis));
     fmt::print("{}", table_of(verdicts));
-    const fs::path history = arguments.history.empty() ? fs::absolute(out).lexically_normal().parent_path() / "calibrations" : fs::path(arguments.history);
+    const fs::path history = arguments.history.empty()
+                                 ? fs::absolute(out).lexically_normal().parent_path() / "calibrations"
+                                 : fs::path(arguments.history);
     fmt::print("Kept:    {} in {}\n", History(history).keep(analysis->calibration), history.string());
   }
   evaluation::write_atomically(out / "steps.csv", steps_csv(store));
@@ -89,10 +94,11 @@ int conclude(const Sequence& sequence, const BenchArguments& arguments, const Be
   const Analysis* found = analysis ? &*analysis : nullptr;
   const std::vector<BenchFigure> figures = bench_figures(sequence, store, found);
   draw_figures(figures, out, kVersion);
-  evaluation::write_atomically(out / "report.html", bench_report_html(sequence, store, found, verdicts, figures, out, command_line(arguments)));
+  evaluation::write_atomically(out / "report.html", bench_report_html(sequence, store, found, verdicts,
+                                                                      figures, out, command_line(arguments)));
   const bool passed = std::ranges::all_of(verdicts, &Verdict::passed);
-  fmt::print("Outcome: {}{}\nResults: {}\nReport:  {}\n", result.outcome, passed ? "" : ", limits exceeded", arguments.out,
-             (out / "report.html").string());
+  fmt::print("Outcome: {}{}\nResults: {}\nReport:  {}\n", result.outcome, passed ? "" : ", limits exceeded",
+             arguments.out, (out / "report.html").string());
   return result.outcome == "done" && passed ? 0 : 1;
 }
 
@@ -129,28 +135,42 @@ int bench(const BenchArguments& arguments) {
 
 void add_bench(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command = app.add_subcommand("bench", "Carry out a calibration sequence of the front end, unattended");
+  CLI::App* command =
+      app.add_subcommand("bench", "Carry out a calibration sequence of the front end, unattended");
   command->add_option("sequence", arguments->sequence, "Sequence file (TOML)")->required();
-  command->add_option("--out", arguments->out, "The run's directory: its store, calibration file, CSV, JUnit XML, report");
-  command->add_flag("--simulate", arguments->simulate, "Start simulated instruments and run in virtual time, as fast as the machine goes");
-  command->add_option("--simulation", arguments->simulation, "With --simulate: which laboratory, and what goes wrong there (TOML)")
+  command->add_option("--out", arguments->out,
+                      "The run's directory: its store, calibration file, CSV, JUnit XML, report");
+  command->add_flag("--simulate", arguments->simulate,
+                    "Start simulated instruments and run in virtual time, as fast as the machine goes");
+  command
+      ->add_option("--simulation", arguments->simulation,
+                   "With --simulate: which laboratory, and what goes wrong there (TOML)")
       ->needs("--simulate");
-  command->add_option("--unit-of", arguments->unit_of, "With --simulate: accel_1 to accel_3 are the front end of this campaign's sensor unit")
+  command
+      ->add_option("--unit-of", arguments->unit_of,
+                   "With --simulate: accel_1 to accel_3 are the front end of this campaign's sensor unit")
       ->needs("--simulate");
-  auto* dry = command->add_flag("--dry-run", arguments->dry_run, "Check everything, print the plan and its total time, command nothing");
+  auto* dry = command->add_flag("--dry-run", arguments->dry_run,
+                                "Check everything, print the plan and its total time, command nothing");
   command->add_flag("--resume", arguments->resume, "Go on where a run in --out was killed")->excludes(dry);
-  command->add_flag("--unattended", arguments->unattended, "Answer prompts with the sequence's own defaults, on a terminal too");
-  command->add_option("--scale-factors", arguments->scale_factors,
-                      "For a bias run: calibration file of a scale-factor run of the same unit; the result then holds both");
-  command->add_option("--history", arguments->history, "Directory to keep the calibration in; calibrations beside --out by default");
+  command->add_flag("--unattended", arguments->unattended,
+                    "Answer prompts with the sequence's own defaults, on a terminal too");
+  command->add_option(
+      "--scale-factors", arguments->scale_factors,
+      "For a bias run: calibration file of a scale-factor run of the same unit; the result then holds both");
+  command->add_option("--history", arguments->history,
+                      "Directory to keep the calibration in; calibrations beside --out by default");
   command->footer(
-      "Exit status 1 where the run ended early, a step failed or a limit is exceeded. SIGINT and SIGTERM end a run safely:\n"
+      "Exit status 1 where the run ended early, a step failed or a limit is exceeded. SIGINT and SIGTERM end "
+      "a run safely:\n"
       "calibrator off, chamber to ambient.\n"
       "Examples:\n"
       "  waverig bench rig/sequences/scale_factor.toml --dry-run\n"
       "  waverig bench rig/sequences/scale_factor.toml --simulate --out results/scale\n"
-      "  waverig bench rig/sequences/scale_factor_dmm.toml --simulate --out results/scale_dmm      by the multimeter\n"
-      "  waverig bench rig/sequences/bias.toml --simulate --out results/bias --scale-factors results/scale/calibration.json\n"
+      "  waverig bench rig/sequences/scale_factor_dmm.toml --simulate --out results/scale_dmm      by the "
+      "multimeter\n"
+      "  waverig bench rig/sequences/bias.toml --simulate --out results/bias --scale-factors "
+      "results/scale/calibration.json\n"
       "  waverig bench rig/sequences/scale_factor.toml --out /data/unit7 --resume      after a power loss");
   command->callback([arguments, &chosen] { chosen = [arguments] { return bench(*arguments); }; });
 }

@@ -18,7 +18,7 @@ std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 void on_signal(int number) {
-  if (stop_asked.exchange(true)) {   // asked twice: at once, as without us
+  if (stop_asked.exchange(true)) {  // asked twice: at once, as without us
     ::signal(number, SIG_DFL);
     ::raise(number);
   }
@@ -40,14 +40,16 @@ void BenchTerminal::show(const rig::bench::Progress& progress) {
     alarm_ = progress.alarm;
     failures_ = progress.failures;
     clear();
-    if (!alarm_.empty()) fmt::print(stderr, "{}alarm: {}{}\n", terminal_ ? "\033[31m" : "", alarm_, terminal_ ? "\033[0m" : "");
+    if (!alarm_.empty())
+      fmt::print(stderr, "{}alarm: {}{}\n", terminal_ ? "\033[31m" : "", alarm_, terminal_ ? "\033[0m" : "");
     drawn_ = {};
   }
   const auto now = std::chrono::steady_clock::now();
   if (!terminal_ || now - drawn_ < kRedraw) return;
   drawn_ = now;
   fmt::print(stderr, "\r\033[K{}/{}  {} left  {}  {}{}", progress.step->index + 1, progress.steps,
-             rig::bench::show_duration(progress.remaining_s), progress.step->path, rig::bench::describe_action(*progress.step),
+             rig::bench::show_duration(progress.remaining_s), progress.step->path,
+             rig::bench::describe_action(*progress.step),
              failures_ > 0 ? fmt::format("  {} failed", failures_) : "");
   std::fflush(stderr);
 }

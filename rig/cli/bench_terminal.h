@@ -1,5 +1,5 @@
-// What a bench shows while it runs: one line on stderr with the step, the remaining time and alarms. On a terminal the
-// line stays where it is; elsewhere only alarms are written, each once.
+// What a bench shows while it runs: one line on stderr with the step, the remaining time and alarms. On a
+// terminal the line stays where it is; elsewhere only alarms are written, each once.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -17,7 +17,7 @@ class BenchTerminal {
   BenchTerminal& operator=(const BenchTerminal&) = delete;
 
   void show(const rig::bench::Progress& progress);
-  bool ask(const std::string& question);   // true: go on
+  bool ask(const std::string& question);  // true: go on
   bool interactive() const { return interactive_; }
 
  private:
@@ -29,7 +29,8 @@ class BenchTerminal {
   std::chrono::steady_clock::time_point drawn_;
 };
 
-// SIGINT and SIGTERM set the flag instead of ending the program, so that the bench is left safe; a second one ends it.
+// SIGINT and SIGTERM set the flag instead of ending the program, so that the bench is left safe; a second one
+// ends it.
 class StopOnSignal {
  public:
   StopOnSignal();

@@ -9,7 +9,7 @@ class App;
 
 namespace waverig::cli {
 
-using Command = std::function<int()>;   // returns the exit status: 0 done, 1 the answer is no
+using Command = std::function<int()>;  // returns the exit status: 0 done, 1 the answer is no
 
 void add_sweep(CLI::App& app, Command& chosen);
 void add_plan(CLI::App& app, Command& chosen);
@@ -21,7 +21,7 @@ void add_film(CLI::App& app, Command& chosen);
 void add_merge(CLI::App& app, Command& chosen);
 void add_compare(CLI::App& app, Command& chosen);
 void add_calibrate(CLI::App& app, Command& chosen);
-void add_calibrate_front_end(CLI::App& calibrate, Command& chosen);   // a command of calibrate
+void add_calibrate_front_end(CLI::App& calibrate, Command& chosen);  // a command of calibrate
 void add_calibrations(CLI::App& app, Command& chosen);
 void add_bench(CLI::App& app, Command& chosen);
 void add_bench_estimators(CLI::App& app, Command& chosen);
@@ -29,7 +29,8 @@ void add_analyse(CLI::App& app, Command& chosen);
 void add_node(CLI::App& app, Command& chosen);
 
 inline constexpr void (*kCommands[])(CLI::App&, Command&) = {
-    add_sweep, add_plan, add_estimate, add_evaluate, add_figures, add_report, add_film, add_compare, add_merge, add_node, add_analyse,
-    add_bench, add_bench_estimators, add_calibrate, add_calibrations};
+    add_sweep,   add_plan,  add_estimate,         add_evaluate,  add_figures,
+    add_report,  add_film,  add_compare,          add_merge,     add_node,
+    add_analyse, add_bench, add_bench_estimators, add_calibrate, add_calibrations};
 
 }  // namespace waverig::cli

@@ -18,8 +18,9 @@ render::PaperTraces uncalibrated_traces(const evaluation::RunRecord& run, const 
 }  // namespace
 
 std::vector<std::filesystem::path> draw_campaign(const evaluation::CampaignResults& results,
-                                                 const std::filesystem::path& directory, const rig::CampaignUnit& unit,
-                                                 int jobs, const DrawOptions& wanted) {
+                                                 const std::filesystem::path& directory,
+                                                 const rig::CampaignUnit& unit, int jobs,
+                                                 const DrawOptions& wanted) {
   render::FigureOptions options;
   options.theme = wanted.dark ? render::Theme::kDark : render::Theme::kPrint;
   options.svg = wanted.svg;

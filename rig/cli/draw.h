@@ -13,9 +13,11 @@ struct DrawOptions {
   bool svg = false;
 };
 
-// Draws into directory/figures with that many threads, on which the pictures do not depend; returns their paths.
+// Draws into directory/figures with that many threads, on which the pictures do not depend; returns their
+// paths.
 std::vector<std::filesystem::path> draw_campaign(const evaluation::CampaignResults& results,
-                                                 const std::filesystem::path& directory, const rig::CampaignUnit& unit,
-                                                 int jobs, const DrawOptions& options = {});
+                                                 const std::filesystem::path& directory,
+                                                 const rig::CampaignUnit& unit, int jobs,
+                                                 const DrawOptions& options = {});
 
 }  // namespace waverig::cli

@@ -27,7 +27,8 @@ counts_t message_of(const UnitCounts& counts) {
 
 }  // namespace
 
-AcquisitionNode::AcquisitionNode(Bus& bus, Acquisition acquisition) : bus_(bus), acquisition_(std::move(acquisition)) {
+AcquisitionNode::AcquisitionNode(Bus& bus, Acquisition acquisition)
+    : bus_(bus), acquisition_(std::move(acquisition)) {
   bus_.subscribe<record_t>(channel::kRecord, [this](const record_t& m) {
     if (m.action == static_cast<std::int32_t>(RecordAction::kBegin)) acquisition_.begin_record();
   });

@@ -20,7 +20,9 @@ class EvaluatorNode {
   // A method of whose waves some were lost on the bus carries flag::kGap.
   std::vector<evaluation::RunResult> finish();
 
-  std::int64_t truths_missing() const { return truths_.missing(); }   // the judge bridges them by straight lines
+  std::int64_t truths_missing() const {
+    return truths_.missing();
+  }  // the judge bridges them by straight lines
 
  private:
   evaluation::RunJudge judge_;

@@ -11,7 +11,7 @@
 namespace waverig::rig {
 namespace {
 
-constexpr std::int64_t kStatusPeriod_utime = 100000;   // between two axis_t where nothing changes
+constexpr std::int64_t kStatusPeriod_utime = 100000;  // between two axis_t where nothing changes
 
 }  // namespace
 
@@ -35,7 +35,8 @@ void MotionNode::cycle(std::int64_t utime) {
   if (started_ && !finished_) announce_.phase(utime, cut_short ? Phase::kStopped : announced_phase());
   publish_status(utime);
   if (finished_) return;
-  if (cut_short) publish_alarm(utime, alarmed ? controller_.alarm_message() : "stopped before the run's end, as told");
+  if (cut_short)
+    publish_alarm(utime, alarmed ? controller_.alarm_message() : "stopped before the run's end, as told");
   if (cut_short || status.runs_finished > 0) {
     finished_ = true;
     controller_.stop();
@@ -51,7 +52,8 @@ bool MotionNode::at_rest() const {
 // While the profile's time is held, or eases out of it or back, the wave is not the one that was ordered.
 Phase MotionNode::announced_phase() const {
   const auto& status = controller_.status();
-  const bool held = status.state == motion::AxisState::kRunning && status.hold != motion::RunClock::State::kRunning;
+  const bool held =
+      status.state == motion::AxisState::kRunning && status.hold != motion::RunClock::State::kRunning;
   return held ? Phase::kHeld : status.phase;
 }
 

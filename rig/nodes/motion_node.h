@@ -1,5 +1,6 @@
-// MotionNode: the axis controller on the bus. It enables the drive, plays one run's profile, says which phase begins,
-// and marks begin and end of the record. One cycle() a control period; whoever calls it owns the time.
+// MotionNode: the axis controller on the bus. It enables the drive, plays one run's profile, says which phase
+// begins, and marks begin and end of the record. One cycle() a control period; whoever calls it owns the
+// time.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -14,17 +15,18 @@ namespace waverig::rig {
 class MotionNode {
  public:
   // drive must outlive the node, which leaves it stopped on every way out.
-  MotionNode(Bus& bus, motion::Drive& drive, const motion::AxisSettings& axis, const motion::RotationProfile& profile,
-             const OrderedRun& ordered);
+  MotionNode(Bus& bus, motion::Drive& drive, const motion::AxisSettings& axis,
+             const motion::RotationProfile& profile, const OrderedRun& ordered);
 
   void cycle(std::int64_t utime);
-  // The record has ended: done, alarmed or stopped. Whoever has the time goes on with cycle() until at_rest().
+  // The record has ended: done, alarmed or stopped. Whoever has the time goes on with cycle() until
+  // at_rest().
   bool finished() const { return finished_; }
-  bool at_rest() const;   // the drive is off
+  bool at_rest() const;  // the drive is off
 
   // Requests; they act in the next cycle. A held span is announced as Phase::kHeld.
-  void stop() { stop_wanted_ = true; }             // ends the run early: quick stop and drive off
-  void hold() { controller_.hold(); }              // feed hold; throws UserError where nothing runs
+  void stop() { stop_wanted_ = true; }  // ends the run early: quick stop and drive off
+  void hold() { controller_.hold(); }   // feed hold; throws UserError where nothing runs
   void resume() { controller_.resume(); }
 
   // The alarm that ended the run, with its numbers; empty where there was none.

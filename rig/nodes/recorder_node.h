@@ -1,6 +1,6 @@
-// RecorderNode: writes everything on the bus into an LCM event log. An event's time is the latest utime of any message
-// so far: what speaks of the past (a wave, of its start) stands where it was said, and time never runs back.
-// A recorder of our own, since lcm-logger loses events in a burst and at its end.
+// RecorderNode: writes everything on the bus into an LCM event log. An event's time is the latest utime of
+// any message so far: what speaks of the past (a wave, of its start) stands where it was said, and time never
+// runs back. A recorder of our own, since lcm-logger loses events in a burst and at its end.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -27,7 +27,7 @@ class RecorderNode {
   std::filesystem::path path_, part_;
   std::int64_t latest_utime_ = 0;
   EventLogWriter writer_;
-  std::map<std::string, SequenceWatch, std::less<>> counted_;   // those of waverig that count every message
+  std::map<std::string, SequenceWatch, std::less<>> counted_;  // those of waverig that count every message
 };
 
 }  // namespace waverig::rig

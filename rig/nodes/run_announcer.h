@@ -16,7 +16,7 @@ struct OrderedRun {
 class RunAnnouncer {
  public:
   RunAnnouncer(Bus& bus, const OrderedRun& ordered) : bus_(bus), ordered_(ordered) {}
-  void phase(std::int64_t utime, Phase phase);          // nothing where it goes on
+  void phase(std::int64_t utime, Phase phase);  // nothing where it goes on
   void record(std::int64_t utime, RecordAction action);
 
  private:

@@ -1,5 +1,5 @@
-// SimulatedRig: everything from the drive to the frames. It speaks only what the hardware speaks, drive registers on
-// one side and frame bytes on the other; the truth it publishes is for the evaluator alone.
+// SimulatedRig: everything from the drive to the frames. It speaks only what the hardware speaks, drive
+// registers on one side and frame bytes on the other; the truth it publishes is for the evaluator alone.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -17,20 +17,22 @@ struct SimulatedRigSettings {
   RotatingArmSettings arm;
   double radius_m = 0.5;
   UnitSettings unit;
-  double step_s = 2e-3;       // of mechanism and sensors
+  double step_s = 2e-3;  // of mechanism and sensors
   double truth_interval_s = 0.01;
   std::uint64_t noise_seed = 1;
 };
 
 class SimulatedRig {
  public:
-  SimulatedRig(Bus& bus, const SimulatedRigSettings& settings, const UnitParameters& unit, std::int64_t start_utime);
+  SimulatedRig(Bus& bus, const SimulatedRigSettings& settings, const UnitParameters& unit,
+               std::int64_t start_utime);
 
   motion::SimulatedDrive& drive() { return drive_; }
   // Lets a time pass and publishes the truth at its end; the bytes stay valid until the next call.
   std::span<const std::uint8_t> advance(double duration_s);
-  // The same up to a time, for a rig in real time that is looked at at any moment: the last step may be a short one,
-  // and the truth comes every truth_interval_s at the most. Nothing happens where the time has passed already.
+  // The same up to a time, for a rig in real time that is looked at at any moment: the last step may be a
+  // short one, and the truth comes every truth_interval_s at the most. Nothing happens where the time has
+  // passed already.
   std::span<const std::uint8_t> advance_to(std::int64_t utime);
 
  private:

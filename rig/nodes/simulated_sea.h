@@ -1,4 +1,5 @@
-// SimulatedSea: a buoy that floats on an irregular sea, in place of arm and drive: the same sensors, front end and frames.
+// SimulatedSea: a buoy that floats on an irregular sea, in place of arm and drive: the same sensors, front
+// end and frames.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -16,15 +17,15 @@ struct SimulatedSeaSettings {
   motion::FloatSettings buoy;
   UnitSettings unit;
   double duration_s = 1200;
-  double step_s = 2e-3;       // of buoy and sensors
+  double step_s = 2e-3;  // of buoy and sensors
   std::uint64_t noise_seed = 1;
 };
 
 class SimulatedSea {
  public:
   // Announces the record, all of it steady, from start_utime on.
-  SimulatedSea(Bus& bus, const SimulatedSeaSettings& settings, const UnitParameters& unit, std::int64_t start_utime,
-               const OrderedRun& ordered);
+  SimulatedSea(Bus& bus, const SimulatedSeaSettings& settings, const UnitParameters& unit,
+               std::int64_t start_utime, const OrderedRun& ordered);
 
   bool finished() const { return finished_; }
   // Lets a time pass and publishes the truth at its end; the bytes stay valid until the next call.

@@ -1,11 +1,12 @@
-// Strict reading of TOML settings: every complaint is one sentence that names file, line, key, value and what was
-// expected, and a key that nobody asked for is a complaint too.
+// Strict reading of TOML settings: every complaint is one sentence that names file, line, key, value and what
+// was expected, and a key that nobody asked for is a complaint too.
 //
 //   TomlFile file(path);
 //   TomlTable rig = file.root().table("rig");
 //   settings.radius_max_m = rig.number("radius_max_m", settings.radius_max_m, {0.05, 5.0});
 //   file.root().refuse_unknown_keys();        // recursive: call it last
 #pragma once
+#include <toml++/toml.h>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -13,7 +14,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <toml++/toml.h>
 #include <vector>
 
 namespace waverig::rig {
@@ -26,19 +26,22 @@ struct Range {
 class TomlTable {
  public:
   bool has(std::string_view key) const;
-  std::vector<std::string> keys() const;            // in the order of the alphabet
+  std::vector<std::string> keys() const;  // in the order of the alphabet
 
-  // Each returns the value of the key, or the fallback where the key is absent; throws UserError where the value has
-  // another type or lies outside the range.
+  // Each returns the value of the key, or the fallback where the key is absent; throws UserError where the
+  // value has another type or lies outside the range.
   double number(std::string_view key, std::optional<double> fallback, Range range = {});
   std::int64_t integer(std::string_view key, std::optional<std::int64_t> fallback, Range range = {});
   bool boolean(std::string_view key, std::optional<bool> fallback);
   std::string text(std::string_view key, std::optional<std::string> fallback);
-  std::string choice(std::string_view key, std::optional<std::string> fallback, const std::vector<std::string>& allowed);
-  std::vector<double> numbers(std::string_view key, std::optional<std::vector<double>> fallback, Range range = {});
+  std::string choice(std::string_view key, std::optional<std::string> fallback,
+                     const std::vector<std::string>& allowed);
+  std::vector<double> numbers(std::string_view key, std::optional<std::vector<double>> fallback,
+                              Range range = {});
   std::vector<std::string> texts(std::string_view key, std::optional<std::vector<std::string>> fallback);
 
-  // What the resolved text shall say of a key instead of the value that was read, e.g. where a file has been copied to.
+  // What the resolved text shall say of a key instead of the value that was read, e.g. where a file has been
+  // copied to.
   void say(std::string_view key, const std::string& value);
 
   // The table of that key; an empty one where it is absent.
@@ -56,7 +59,7 @@ class TomlTable {
 
  private:
   friend class TomlFile;
-  struct Shared {   // what was asked for, per table, for the recursive check
+  struct Shared {  // what was asked for, per table, for the recursive check
     const toml::table* node = nullptr;
     std::string file, prefix;
     std::uint32_t line = 1;
@@ -75,12 +78,13 @@ class TomlTable {
 
 class TomlFile {
  public:
-  explicit TomlFile(const std::filesystem::path& path);                 // throws UserError
-  TomlFile(std::string_view text, const std::string& name);             // the text itself, for tests and stored settings
+  explicit TomlFile(const std::filesystem::path& path);      // throws UserError
+  TomlFile(std::string_view text, const std::string& name);  // the text itself, for tests and stored settings
   TomlTable& root() { return *root_; }
   // Replaces a value of the root before it is read, as a command-line option does.
   void set(std::string_view key, std::int64_t value) { document_->insert_or_assign(key, value); }
-  // All that was asked for so far with the value it has, fallbacks included, as TOML: reading it gives the same again.
+  // All that was asked for so far with the value it has, fallbacks included, as TOML: reading it gives the
+  // same again.
   std::string resolved() const;
 
  private:

@@ -1,5 +1,5 @@
-// waverig node instruments-sim: the other side of every cable of a bench, in real time: raw SCPI, VXI-11, a GPIB gateway,
-// two serial ports. Any client may talk to it.
+// waverig node instruments-sim: the other side of every cable of a bench, in real time: raw SCPI, VXI-11, a
+// GPIB gateway, two serial ports. Any client may talk to it.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -30,8 +30,10 @@ std::string readdressed(const Laboratory& as_written, const Laboratory& simulate
     for (std::size_t at = text.find(quoted); at != std::string::npos; at = text.find(quoted, at + to.size()))
       text.replace(at, quoted.size(), "\"" + to + "\"");
   };
-  for (std::size_t i = 0; i < as_written.gateways.size(); ++i) replace(as_written.gateways[i].address, simulated.gateways[i].address);
-  for (std::size_t i = 0; i < as_written.ports.size(); ++i) replace(as_written.ports[i].address, simulated.ports[i].address);
+  for (std::size_t i = 0; i < as_written.gateways.size(); ++i)
+    replace(as_written.gateways[i].address, simulated.gateways[i].address);
+  for (std::size_t i = 0; i < as_written.ports.size(); ++i)
+    replace(as_written.ports[i].address, simulated.ports[i].address);
   for (std::size_t i = 0; i < as_written.instruments.size(); ++i)
     if (as_written.instruments[i].address != simulated.instruments[i].address)
       replace(as_written.instruments[i].address, simulated.instruments[i].address);
@@ -44,12 +46,16 @@ int run_instruments_sim(const InstrumentsSimArguments& arguments) {
   const Laboratory laboratory = load_laboratory(arguments.laboratory);
   SimulationSettings settings;
   if (!arguments.simulation.empty()) settings = load_simulation(arguments.simulation);
-  Requests requests;   // before the laboratory's thread
+  Requests requests;  // before the laboratory's thread
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  const SimulatedLaboratory simulated(settings, laboratory, nullptr, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
-  for (const SimulatedLaboratory::Endpoint& e : simulated.endpoints()) fmt::print("{:<18} {}\n", e.instrument, e.address);
-  if (!simulated.has_vxi11()) fmt::print(stderr, "instruments-sim: no VXI-11: its port mapper needs port 111\n");
-  if (!arguments.write.empty()) evaluation::write_atomically(arguments.write, readdressed(laboratory, simulated.addressed()));
+  const SimulatedLaboratory simulated(settings, laboratory, nullptr,
+                                      std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  for (const SimulatedLaboratory::Endpoint& e : simulated.endpoints())
+    fmt::print("{:<18} {}\n", e.instrument, e.address);
+  if (!simulated.has_vxi11())
+    fmt::print(stderr, "instruments-sim: no VXI-11: its port mapper needs port 111\n");
+  if (!arguments.write.empty())
+    evaluation::write_atomically(arguments.write, readdressed(laboratory, simulated.addressed()));
   std::fflush(stdout);
   while (requests.next() != Request::kStop) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   return 0;
