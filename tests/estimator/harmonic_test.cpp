@@ -2,6 +2,7 @@
 #include "estimator/waves/harmonic.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <functional>
@@ -326,6 +327,34 @@ TEST(Harmonic, HoldsNoSamplesBackForASensorThatIsStuck) {
     method.finish(found);
     ASSERT_EQ(found.heaves.size(), good.size());
     for (std::size_t i = 0; i < good.size(); ++i) ASSERT_EQ(found.heaves[i].seq, good[i].seq);
+  }
+}
+
+// A buoy's record has no end: what the method holds is some waves, in waves and at rest, after an hour as after
+// four.
+TEST(Harmonic, HoldsNoMoreOfALongRecordThanOfAShortOne) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a sanitizer's allocator does not tell what is in use";
+#endif
+  for (const double height_m : {1.0, 0.0}) {
+    Harmonic method(knowing(kFresh));
+    Output nobody;
+    RandomStream random(5, "noise");
+    auto held_after = [&, row = std::int64_t{0}](std::int64_t hours) mutable {
+      constexpr double kRate_Hz = 10, kPeriod_s = 8;
+      for (; row < hours * 36000; ++row) {
+        const double phase = 2 * kPi * static_cast<double>(row) / (kRate_Hz * kPeriod_s);
+        ImuSample sample;
+        sample.utime = row * 100000;
+        sample.f_B = {random.gaussian(0.01), random.gaussian(0.01),
+                      -kStandardGravity + square(2 * kPi / kPeriod_s) * height_m / 2 * std::sin(phase) +
+                          random.gaussian(0.01)};
+        method.add(sample, nobody);
+      }
+      return ::mallinfo2().uordblks;
+    };
+    const auto short_bytes = held_after(1), long_bytes = held_after(4);
+    EXPECT_LT(long_bytes, 2 * short_bytes) << height_m << " m";
   }
 }
 
