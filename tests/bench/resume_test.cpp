@@ -116,5 +116,30 @@ TEST(Resume, RefusesAChangedSequenceAndAForeignDirectory) {
   EXPECT_EQ(run_bench(load_sequence(files.file()), options).outcome, "done");   // the chamber was let go: it settles anew
 }
 
+// A ramp of temperature that was broken off and torn down cannot go on where it stood.
+TEST(Resume, RefusesToGoOnWithAnUninterruptedSequenceThatWasTornDown) {
+  const ShortSequence files("bias.toml", {{"duration = \"25 h\" ", "# "}});
+  const Sequence sequence = load_sequence(files.file());
+  BenchOptions options = options_for(files.out());
+  std::atomic<bool> stop{false};
+  int steps = 0;
+  options.stop = &stop;
+  options.progress = [&](const Progress&) { stop = ++steps == 15; };
+  options.clear_stop = [&] { stop = false; };
+  EXPECT_EQ(run_bench(sequence, options).outcome, "stopped by the user");
+  const std::size_t before = Store::open(store_file(files.out())).steps().size();
+  options.resume = true;
+  options.progress = nullptr;
+  try {
+    run_bench(sequence, options);
+    ADD_FAILURE() << "it went on";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("torn down (stopped by the user), and its sequence cannot be interrupted"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(Store::open(store_file(files.out())).steps().size(), before);
+}
+
 }  // namespace
 }  // namespace waverig::rig::bench

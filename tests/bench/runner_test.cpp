@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 #include <thread>
+#include <tuple>
 
 #include "lcmtypes/error.h"
 #include "rig/bench/bench.h"
@@ -305,6 +306,73 @@ TEST(Runner, WhoWatchesARunDoesNotStopItsSafeEnd) {
   EXPECT_THROW(runner.run(false), std::runtime_error);
   run.reactor.sleep_until(run.reactor.now() + 60'000'000);
   EXPECT_TRUE(run.safe());
+}
+
+// When the steps of a run without faults end, in seconds since the laboratory's start, a moment early: the next run
+// has the same times.
+std::vector<double> step_ends_s(OpenRun& run) {
+  const std::int64_t begin = run.time.now();
+  EXPECT_EQ(run.run(), "done");
+  std::vector<double> ends_s;
+  for (const StepRow& row : run.store.steps()) ends_s.push_back(1e-6 * static_cast<double>(row.ended_utime - begin) - 0.01);
+  return ends_s;
+}
+
+TEST(Runner, AStepOfTheTearDownThatFailsIsTold) {
+  const ShortSequence::Changes supply_off = {
+      {"[[teardown]]\n", "[[teardown]]\nset = \"supply.output\"\nvalue = \"off\"\n\n[[teardown]]\n"}};
+  OpenRun good({}, supply_off);
+  const std::vector<double> ends_s = step_ends_s(good);
+  const std::size_t first = ends_s.size() - 5;  // of five
+  // Nothing of the supply is made safe besides: the step alone tells.
+  OpenRun run({{"supply", FaultType::kHang, ends_s[first - 1], 1e12, 0}}, supply_off);
+  RunnerHooks hooks;
+  int failures = 0;
+  std::string alarm;
+  hooks.progress = [&](const Progress& progress) {
+    failures = progress.failures;
+    alarm = progress.alarm;
+  };
+  Runner runner(run.sequence, run.reactor, run.store, hooks);
+  EXPECT_EQ(runner.run(false), "done with failures");
+  EXPECT_EQ(failures, 1);
+  EXPECT_NE(alarm.find("supply: no answer in time"), std::string::npos) << alarm;
+  run.reactor.sleep_until(run.reactor.now() + 5'000'000);
+  EXPECT_TRUE(run.safe());
+  ASSERT_EQ(run.failures().size(), 1U);
+  EXPECT_EQ(run.failures()[0].what, "set supply.output off");
+  EXPECT_EQ(run.failures()[0].outcome, StepOutcome::kFailed);
+}
+
+// Nothing asks the generator before it is made safe: the first use of what fell silent only finds it out.
+TEST(Runner, WhatCannotBeMadeSafeIsTriedOnceMoreAndThenTold) {
+  OpenRun good;
+  const double end_s = step_ends_s(good).back();
+  OpenRun once({{"generator", FaultType::kHang, kWhileMeasuring, end_s + 0.5, 0}}),
+      always({{"generator", FaultType::kHang, kWhileMeasuring, 1e12, 0}});
+  EXPECT_EQ(once.run(), "done");
+  EXPECT_EQ(always.run(), "done with failures");
+  EXPECT_TRUE(once.safe());
+  EXPECT_TRUE(always.safe()) << "the others are, whatever one does";
+}
+
+// By the unit's design: the converter's own scale is within 1 % of it.
+TEST(Runner, ARecordingsCurrentIsHeldAgainstItsLimits) {
+  const auto changed = [](const std::string& low, const std::string& high) -> ShortSequence::Changes {
+    return {{"limits = [{ of = \"lost\"",
+             "limits = [{ of = \"current\", low = \"" + low + "\", high = \"" + high + "\" }, { of = \"lost\""}};
+  };
+  OpenRun wide({}, changed("-210 mA", "210 mA"));
+  EXPECT_EQ(wide.run(), "done");
+  for (const auto& [low, high, found_mA] : {std::tuple{"-15 mA", "210 mA", -100}, {"-210 mA", "15 mA", 100}}) {
+    OpenRun run({}, changed(low, high));  // the gyroscope's channel is the first to be given more
+    const std::string outcome = run.run();
+    const std::size_t at = outcome.find("counts: out of range: current = ");
+    ASSERT_NE(at, std::string::npos) << outcome;
+    EXPECT_NEAR(std::stod(outcome.substr(outcome.find("= ", at) + 2)), found_mA, 1) << outcome;
+    run.reactor.sleep_until(run.reactor.now() + 60'000'000);  // the output dies away
+    EXPECT_TRUE(run.safe());
+  }
 }
 
 TEST(Sequence, RefusesWhatCannotWorkWithOneSentence) {
