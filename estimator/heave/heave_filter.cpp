@@ -99,6 +99,7 @@ void HeaveFilter::step(const HeaveStep& step) {
   const PathIncrement sea = without_drift(step.increment, dt);
   path_m_ += dt * speed_mps_ + sea.path_m;
   speed_mps_ += sea.speed_mps;
+  drift_speed_mps_ += dt * bias_mps2_;
   const double told_m = path_m_;
   const bool rested = rests_;
   look_for_rest(sea, step.turn_mps2);
@@ -202,9 +203,17 @@ void HeaveFilter::update() {
   z_ += innovation * gain.head(n);
   path_m_ -= innovation * gain[n];
   speed_mps_ -= innovation * gain[n + 1];
+  drift_speed_mps_ += innovation * gain[n + 1];
   bias_mps2_ += innovation * gain[n + 2];
   gyro_scale_ += innovation * gain.tail<2>().array();
   P_.selfadjointView<Eigen::Lower>().rankUpdate(PH, -1 / S);
+}
+
+double HeaveFilter::drifted_from(const HeaveFilter& before, double t) const {
+  const DriftMatrix D = before.drift();
+  const double variance = D(1, 1) + 2 * t * D(2, 1) + t * t * D(2, 2) + t * before.model_.accel_noise_m2ps3;
+  const double expected_mps = before.drift_speed_mps_ + t * before.bias_mps2_;
+  return std::abs(drift_speed_mps_ - expected_mps) / std::sqrt(variance);
 }
 
 double HeaveFilter::variance_m2(const LevelIncrement& partial, double since_s) const {

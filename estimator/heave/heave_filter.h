@@ -74,6 +74,8 @@ class HeaveFilter {
   bool stirs() const { return stirs_; }  // taken to rest, and moved, by far less than the sea would
   double recent_mps2() const { return std::sqrt(recent_m2ps4_); }  // rms acceleration of the last ten seconds
   double correction_m() const { return correction_m_; }            // of heave by the last step, if by a rest
+  // By how many standard deviations the drift's speed has left what it was to be, from an earlier filter on.
+  double drifted_from(const HeaveFilter& before, double elapsed_s) const;
   const SeaModel& model() const { return model_; }
   int order() const { return model_.order(); }
   const Eigen::Array2d& gyro_scale() const { return gyro_scale_; }  // relative error about body x and y
@@ -107,6 +109,7 @@ class HeaveFilter {
   int quiet_ = 0;  // nodes without motion
   int onset_ = 0;  // nodes still to go after a rest, until roughness may tell of another sea
   bool rests_ = false, stirs_ = false;
+  double drift_speed_mps_ = 0;  // taken out so far
   double correction_m_ = 0, recent_m2ps4_ = 0;
 };
 

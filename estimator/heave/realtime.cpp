@@ -30,13 +30,12 @@ constexpr double kRethought_s = 60;
 constexpr std::array kSwells = {5e-4, 0.03, 0.5};  // relative variances, of which one is believed
 constexpr double kLargeSwell = 0.3;                // a swell is the less usual the larger, by this power
 constexpr int kRethoughtAgain = 12;                // when surprised, with a twelfth more seen
-constexpr std::ptrdiff_t kOnset = 4;               // nodes; a rise is seen so much later than it begins
-constexpr std::ptrdiff_t kRise = 80;               // nodes after it that are gone through again
+constexpr double kLikelier = 2;                    // by so much in log likelihood another onset is believed
+constexpr int kRise = 76;                          // nodes after a rise was seen that are gone through again
 constexpr std::int64_t kMayJump = 120;             // nodes; later, what is told has been taken for waves
 constexpr double kSeaIsGone_s = 12;                // after a rest of that length
 constexpr double kJumpFades_s = 4, kJumpFadesInCalm_s = 60;
-constexpr double kFarthestRest = 2;  // standard deviations of the sea, from its mean level
-constexpr int kStirred = 30;         // nodes; what comes up in a calm later is not what stirred in it
+constexpr int kStirred = 30;  // nodes; what comes up in a calm later is not what stirred in it
 constexpr double kOutgrown = 2, kCalm_mps2 = 0.1;
 constexpr double kChosenAgain = 1.5;  // times the nodes, while the sea is guessed
 constexpr double kGuessWeight = 3;    // periodograms of less than a minute tell little
@@ -98,7 +97,7 @@ void Realtime::add(const ImuSample& raw, Output& output) {
     else if (rise_)
       rethink_rise();
     else
-      filter_.set_model(identifier_.identify());
+      learn();
   }
   jump_m_ *= std::exp(-verdict.dt_s / (!rethinks_ && calm() ? kJumpFadesInCalm_s : kJumpFades_s));
   // 3. Answer, now or after the lag.
@@ -140,7 +139,7 @@ void Realtime::resume(const ImuSample& sample, Output& output) {
   settled_nodes_ = 0;
   jump_m_ = rest_level_m_ = 0;
   beyond_ = 0;
-  calm_.reset();
+  calm_.clear();
   rise_.reset();
   const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
   if (missing_s > kSeaLasts_s) {
@@ -209,10 +208,13 @@ void Realtime::filter(const HeaveStep& step) {
     return;
   }
   if (!rethinks_ && (was_gone || filter_.stirs())) {
-    rise_ = std::exchange(calm_, std::nullopt);
+    rise(calm_.newest());
     forget_sea(true);
     return;
   }
+  // A sea that comes up softly surprises no filter of a calm: it is taken for a drift, of which it makes more
+  // than noise does.
+  if (!rise_ && calm_.drifts_away(filter_) && rises_softly()) return;
   // What comes up in a calm is new, however short the calm was.
   if (!filter_.surprised()) return;
   const bool out_of_calm = identifier_.calm() && (rethinks_ || outgrows_what_stirred());
@@ -220,7 +222,7 @@ void Realtime::filter(const HeaveStep& step) {
     // Surprised again at once: what was forgotten was too little to show a sea as slow as this.
     const bool at_once = identifier_.age() < kAtOnce * old_enough_;
     old_enough_ = at_once ? std::min(2 * old_enough_, kOldestEnough) : kOldEnough;
-    rise_ = std::exchange(calm_, std::nullopt);
+    rise(identifier_.calm() ? calm_.newest() : nullptr);
     forget_sea(identifier_.calm());
   } else if (rethinks_) {
     due_ |= nodes_ > thought_at_ + thought_at_ / kRethoughtAgain;
@@ -266,6 +268,45 @@ void Realtime::rest() {
   forget_sea(true);
 }
 
+void Realtime::learn() {
+  const bool was_calm = calm() && calm_.is_long();
+  const SeaModel& sea = identifier_.identify();
+  if (was_calm && !calm())
+    leave_calm();
+  else
+    filter_.set_model(sea);
+}
+
+// Only for a sea that makes the path more probable than the calm does.
+void Realtime::leave_calm() {
+  if (rises_softly()) {
+    rethink_rise();
+  } else if (const Calm::Since* onset =
+                 calm_.onset(identifier_.model(), rest_level_m_, filter_.log_likelihood())) {
+    rise(onset);
+    end_rethinking();
+    rethink_rise();
+  } else {
+    identifier_.keep(filter_.model());
+  }
+}
+
+// A sea of which nothing is known yet but that it was slow enough to hide.
+bool Realtime::rises_softly() {
+  const Calm::Since* onset = calm_.onset(identifier_.slow_sea(), rest_level_m_, filter_.log_likelihood());
+  if (!onset) return false;
+  rise(onset);
+  forget_sea(true);
+  return true;
+}
+
+void Realtime::rise(const Calm::Since* onset) {
+  chosen_at_ = 0;
+  rise_.reset();
+  if (onset) rise_ = Rise{calm_, *onset, nodes_};
+  calm_.clear();
+}
+
 void Realtime::forget_sea(bool calm) {
   chosen_at_ = 0;
   identifier_.forget(calm);
@@ -273,18 +314,29 @@ void Realtime::forget_sea(bool calm) {
 }
 
 void Realtime::remember(const HeaveStep& step) {
-  if (rise_) rise_->steps.push_back(step);
-  if (!calm())
-    calm_.reset();
-  else if (!calm_ || std::ssize(calm_->steps) >= kOnset)
-    calm_ = Since{filter_, {}};
-  if (calm_) calm_->steps.push_back(step);
+  if (rise_) {
+    rise_->calm.follow(step);
+    rise_->since.steps.push_back(step);
+  }
+  if (calm())
+    calm_.add(filter_, step);
+  else
+    calm_.clear();
 }
 
-// The filter after these steps, from the record's start or out of a calm, had their sea been known; of some
-// swells that may lie under it, the one which makes the path most probable.
-HeaveFilter Realtime::most_probable(const HeaveFilter* calm, const std::vector<HeaveStep>& steps) {
+// The filter after these steps, from the record's start or out of a calm, had their sea been known.
+HeaveFilter Realtime::filtered(const Calm::Since* calm, const std::vector<HeaveStep>& steps,
+                               const SeaModel& sea) const {
+  if (calm) return Calm::risen(*calm, sea, rest_level_m_);
   const double elapsed_s = static_cast<double>(nodes_) * kFineInterval_s;
+  HeaveFilter filter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor),
+                     kScaleDoubt * settings_.sensor.gyro_scale_sigma);
+  for (const HeaveStep& step : steps) filter.step(step);
+  return filter;
+}
+
+// Of some swells that may lie under the sea, with the one which makes the path most probable.
+HeaveFilter Realtime::most_probable(const Calm::Since* calm, const std::vector<HeaveStep>& steps) {
   const auto seen = std::ssize(steps);
   const bool choose = identifier_.has_spectrum() ||
                       static_cast<double>(seen) >= kChosenAgain * static_cast<double>(chosen_at_);
@@ -292,15 +344,7 @@ HeaveFilter Realtime::most_probable(const HeaveFilter* calm, const std::vector<H
   std::optional<HeaveFilter> best;
   double most = 0, chosen = swell_;
   for (const double swell : choose ? std::span<const double>(kSwells) : std::span<const double>(&swell_, 1)) {
-    const SeaModel& sea = identifier_.identify(swell);
-    HeaveFilter filter = calm ? *calm
-                              : HeaveFilter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor),
-                                            kScaleDoubt * settings_.sensor.gyro_scale_sigma);
-    if (calm) {
-      const bool as_before = std::abs(rest_level_m_) < kFarthestRest * std::sqrt(sea.heave_variance_m2());
-      filter.begin_sea(sea, as_before ? rest_level_m_ : 0.0);
-    }
-    for (const HeaveStep& step : steps) filter.step(step);
+    HeaveFilter filter = filtered(calm, steps, identifier_.identify(swell));
     const double log_likelihood = filter.log_likelihood() - kLargeSwell * std::log(swell);
     if (!best || log_likelihood > most) {
       most = log_likelihood;
@@ -330,10 +374,23 @@ AttitudeSample Realtime::rethink() {
   }
   due_ = false;
   thought_at_ = nodes_;
+  HeaveFilter whole = most_probable(nullptr, steps);
+  if (!calm() && calm_.is_long()) {
+    leave_calm();
+    return attitude.back();
+  }
   if (nodes_ > kMayJump)
-    tell_without_jump(most_probable(nullptr, steps));
+    tell_without_jump(std::move(whole));
   else
-    filter_ = most_probable(nullptr, steps);
+    filter_ = std::move(whole);
+  calm_.clear();
+  if (calm()) {
+    HeaveFilter filter = filtered(nullptr, {}, filter_.model());
+    for (const HeaveStep& step : steps) {
+      calm_.add(filter, step);
+      filter.step(step);
+    }
+  }
   if (static_cast<double>(nodes_) * kFineInterval_s > kRethought_s || first_.size() > kMostRethought)
     end_rethinking();
   return attitude.back();
@@ -342,8 +399,14 @@ AttitudeSample Realtime::rethink() {
 // A sea that came up, filtered again from the calm on as if it had been known: the first of it was taken for
 // drift.
 void Realtime::rethink_rise() {
-  tell_without_jump(most_probable(&rise_->filter, rise_->steps));
-  if (std::ssize(rise_->steps) <= kRise) return;
+  HeaveFilter risen = most_probable(&rise_->since, rise_->since.steps);
+  if (const Calm::Since* onset = rise_->calm.onset(risen.model(), rest_level_m_,
+                                                   risen.log_likelihood() + kLikelier, rise_->since.at)) {
+    rise_->since = *onset;
+    risen = Calm::risen(*onset, risen.model(), rest_level_m_);
+  }
+  tell_without_jump(std::move(risen));
+  if (nodes_ - rise_->seen_at <= kRise) return;
   rise_.reset();
   if (!calm()) rest_level_m_ = 0;
 }

@@ -6,7 +6,8 @@
 // gone through again with every new model of the sea, levelled by all that was seen since, as if attitude
 // and sea had been known from the start; what no spectrum shows yet, a swell under the sea, is settled by the
 // likelihood of the path. What comes up after a calm is gone through again for its first twenty seconds, from
-// the calm on. A rest in the middle of a sea is short, or the sea is gone. With a fixed lag each sample waits
+// the calm's end on; where that lies, some seconds back if the sea came up softly, is told by the likelihood
+// too. A rest in the middle of a sea is short, or the sea is gone. With a fixed lag each sample waits
 // until the nodes after it have told more about it.
 #pragma once
 #include <deque>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "estimator/attitude/attitude_filter.h"
+#include "estimator/heave/calm.h"
 #include "estimator/heave/disturbance.h"
 #include "estimator/heave/heave_filter.h"
 #include "estimator/heave/sea_identifier.h"
@@ -45,9 +47,10 @@ class Realtime : public Method {
     }
     double change_mps2();  // from the interval before; the next one begins
   };
-  struct Since {  // a filter as it stood, and the steps from then on
-    HeaveFilter filter;
-    std::vector<HeaveStep> steps;
+  struct Rise {  // out of a calm, for as long as its end is gone through again
+    Calm calm;
+    Calm::Since since;
+    std::int64_t seen_at;  // node
   };
   void start_path(const ImuSample& sample, const AttitudeSample& attitude);
   void resume(const ImuSample& sample, Output& output);
@@ -56,7 +59,9 @@ class Realtime : public Method {
   void follow(const ImuSample& sample, const AttitudeSample& attitude, std::vector<HeaveStep>& steps);
   void filter(const HeaveStep& step);
   void remember(const HeaveStep& step);
-  HeaveFilter most_probable(const HeaveFilter* calm, const std::vector<HeaveStep>& steps);
+  HeaveFilter filtered(const Calm::Since* calm, const std::vector<HeaveStep>& steps,
+                       const SeaModel& sea) const;
+  HeaveFilter most_probable(const Calm::Since* calm, const std::vector<HeaveStep>& steps);
   AttitudeSample rethink();
   void rethink_rise();
   bool lost();
@@ -66,6 +71,10 @@ class Realtime : public Method {
   bool calm() const;
   void rest();
   void forget_sea(bool calm);
+  void learn();
+  void leave_calm();
+  bool rises_softly();
+  void rise(const Calm::Since* onset);
   void tell_without_jump(HeaveFilter filter);
   void locate(const AttitudeSample& attitude, Held& held) const;
   void estimate(const Held& held, HeaveSample& sample) const;
@@ -82,10 +91,10 @@ class Realtime : public Method {
   std::vector<ImuSample> first_;         // from the start on, for as long as they are gone through again
   std::optional<AttitudeSample> start_;  // attitude of the first of them, as last found
   std::vector<HeaveStep> steps_;         // of the sample just added; a member for its memory
-  std::optional<Since> calm_;            // a second ago at most, in a calm
-  std::optional<Since> rise_;            // the end of a calm, for as long as it is gone through again
-  double jump_m_ = 0;                    // of heave when it was, or by a rest: taken back, and fading
-  std::deque<LevelIncrement> whole_;     // the newest node intervals, newest last
+  Calm calm_;
+  std::optional<Rise> rise_;
+  double jump_m_ = 0;                 // of heave when it was, or by a rest: taken back, and fading
+  std::deque<LevelIncrement> whole_;  // the newest node intervals, newest last
   std::deque<Held> held_;
   std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;

@@ -24,6 +24,7 @@ constexpr double kShortRecord = 0.01;  // weight of its periodograms
 constexpr double kYoung = 0.2;         // of a grown sea's slow waves, in one that just came up
 constexpr double kLeastSea = 1e-4;     // of the unknown sea: what a calm may still become
 constexpr double kCalm = 1e-3;         // of the unknown sea: a calm
+constexpr double kSlowSea = 0.1;       // of the unknown sea's slow waves: one that comes up unseen
 
 // Kullback, Leibler 1951: how unlike the guess the shape of what is seen is. Of periodograms of a sea of that
 // very shape 0.2 to 0.4, of a single wave 1 to 4.
@@ -108,6 +109,16 @@ void SeaIdentifier::periodogram() {
 }
 
 bool SeaIdentifier::calm() const { return model_.heave_variance_m2() < kCalm * kUnknownSea_m2; }
+
+SeaModel SeaIdentifier::slow_sea() const {
+  const double df = 1 / (kDt * settings_.block);
+  const auto end = std::lround(kSwellEnd_hz / df);
+  Eigen::VectorXd sea = kLeastSea * unknown_;
+  sea.head(end) += kSlowSea * unknown_.head(end);
+  SeaModel model = model_of_density(sea, df, model_.interval_s, settings_.order, kFirstRidge);
+  model.set_noise(settings_.accel_noise_m2ps3);
+  return model;
+}
 
 const SeaModel& SeaIdentifier::identify(double swell) {
   const double df = 1 / (kDt * settings_.block);

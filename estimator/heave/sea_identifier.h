@@ -31,10 +31,13 @@ class SeaIdentifier {
   // By all that was added. swell: variance of a long swell under the guessed sea, relative to it; nothing
   // that is seen at a few nodes tells of it.
   const SeaModel& identify(double swell = 0);
-  void restart();                   // nothing was added
-  void gap();                       // the next increment does not follow on the last
-  void forget(bool out_of_calm);    // the sea is another one from about now on; out of a calm it is guessed
-  int age() const { return age_; }  // nodes since the start, or since it forgot
+  void restart();                 // nothing was added
+  void gap();                     // the next increment does not follow on the last
+  void forget(bool out_of_calm);  // the sea is another one from about now on; out of a calm it is guessed
+  void keep(const SeaModel& model) { model_ = model; }  // what was identified is not believed
+  // A calm under which a swell has come up of which nothing is known.
+  SeaModel slow_sea() const;
+  int age() const { return age_; }                   // nodes since the start, or since it forgot
   const SeaModel& model() const { return model_; }   // as last identified
   bool has_spectrum() const { return weight_ > 0; }  // not the guess alone
   bool calm() const;                                 // no sea to speak of, as last identified

@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <numbers>
+
 #include "lcmtypes/flags.h"
 #include "tests/estimator/run_realtime.h"
 
@@ -119,6 +122,38 @@ TEST(Realtime, IsNotMisledByWhatStirsBeforeTheMotion) {
         squares_m2 += square(out.heaves[i].heave_m - record.heave_m[i]);
     }
     EXPECT_LT(std::sqrt(squares_m2 / n), 0.028) << stir.lasts_s << " s, " << stir.pause_s << " s before";
+  }
+}
+
+// As a rig's runs begin. Its first seconds hide in the sensor's noise, and are no drift.
+TEST(Realtime, FollowsRegularWavesThatComeUpSoftlyAfterARest) {
+  constexpr double kRisesOver = 2;  // periods
+  struct Case {
+    double period_s, amplitude_m, rms;  // of four standard deviations, in the first forty seconds
+  };
+  for (const Case& c : {Case{4, 0.03, 0.20}, {6, 0.065, 0.13}, {8, 0.45, 0.05}, {10, 0.18, 0.06}, {12, 0.26, 0.06}}) {
+    const double omega = 2 * kPi / c.period_s;
+    double squares_m2 = 0, n = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const double rest_s = std::array{15, 25, 60}[seed % 3];
+      const SeaCase lasts{.duration_s = rest_s + 40};
+      const SeaRecord record = recorded(lasts, seed, [&](std::int64_t utime) {
+        const double t_s = static_cast<double>(utime) * kMicrosecond;
+        const double phase = omega * t_s + 2 * static_cast<double>(seed);
+        const Vector3d at(c.amplitude_m * std::cos(phase), 0, c.amplitude_m * std::sin(phase));
+        const Vector3d velocity = omega * Vector3d(-at.z(), 0, at.x());
+        const Ramp r = ramp(t_s, rest_s, kRisesOver * c.period_s);
+        BodyMotion m;
+        m.acceleration_N = -r.w * omega * omega * at + 2 * r.dw * velocity + r.ddw * at;
+        m.velocity_N = r.w * velocity + r.dw * at;
+        m.position_N = r.w * at;
+        return m;
+      });
+      const Collector out = run_realtime(record.samples);
+      for (auto i = static_cast<std::size_t>(100 * rest_s); i < out.heaves.size(); ++i, ++n)
+        squares_m2 += square(out.heaves[i].heave_m - record.heave_m[i]);
+    }
+    EXPECT_LT(std::sqrt(squares_m2 / n), c.rms * 4 * c.amplitude_m / std::numbers::sqrt2) << c.period_s << " s";
   }
 }
 
