@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kLongestSkip_s = 60;  // after that no wave is remembered
 constexpr double kSeaLasts_s = 1800;   // after a longer gap it is another one
-constexpr double kMotionMemory_s = 120;
 constexpr double kSettling_s = 60;
 constexpr int kMostNodesBetween = 8;  // two samples, where a lag is waited for
 // Beyond so many standard deviations of its sea heave has run away if it stays there for longer than a wave's
@@ -58,7 +57,7 @@ SeaIdentifierSettings identifier_settings(const SensorKnowledge& sensor) {
 Realtime::Realtime(const MethodSettings& settings)
     : settings_(settings),
       attitude_(attitude_settings(settings.sensor)),
-      integrator_(kFineInterval_s),
+      path_(settings.sensor),
       identifier_(identifier_settings(settings.sensor)),
       filter_(identifier_.model(), 0, 0),
       counter_(settings.sensor) {
@@ -105,7 +104,8 @@ void Realtime::add(const ImuSample& raw, Output& output) {
   held.sample.utime = sample.utime;
   held.sample.seq = sample.seq;
   held.sample.flags = sample.flags;
-  if (beyond_ > 0 || !attitude.settled || static_cast<double>(settled_nodes_) * kFineInterval_s < kSettling_s)
+  if (rise_ || beyond_ > 0 || !attitude.settled ||
+      static_cast<double>(settled_nodes_) * kFineInterval_s < kSettling_s)
     held.sample.flags |= flag::kSettling;
   locate(attitude, held);
   held_.push_back(held);
@@ -116,19 +116,9 @@ void Realtime::finish(Output& output) {
   if (!held_.empty()) release(held_.back().sample.utime, output);
 }
 
-double Realtime::MeanForce::change_mps2() {
-  const Vector3d mean_B = count > 0 ? Vector3d(sum_B / count) : before_B;
-  const double change = (mean_B - std::exchange(before_B, mean_B)).norm();
-  sum_B.setZero();
-  count = 0;
-  return change;
-}
-
 void Realtime::start_path(const ImuSample& sample, const AttitudeSample& attitude) {
-  integrator_.start(sample.utime, {-attitude.a_N.z(), 0, 0});
+  path_.start(sample, attitude);
   whole_.clear();
-  disturbance_ = {};
-  force_ = {};
   started_ = true;
 }
 
@@ -141,7 +131,7 @@ void Realtime::resume(const ImuSample& sample, Output& output) {
   beyond_ = 0;
   calm_.clear();
   rise_.reset();
-  const double missing_s = static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond;
+  const double missing_s = static_cast<double>(sample.utime - path_.last_utime()) * kMicrosecond;
   if (missing_s > kSeaLasts_s) {
     begin_record();
     return;
@@ -157,9 +147,9 @@ void Realtime::begin_record() {
   filter_ = HeaveFilter(identifier_.model(), 0, 0);
   first_.clear();
   start_.reset();
-  samples_ = nodes_ = chosen_at_ = thought_at_ = 0;
+  nodes_ = chosen_at_ = thought_at_ = 0;
   old_enough_ = kOldEnough;
-  motion_ = {};
+  path_.forget_motion();
   rethinks_ = true;
 }
 
@@ -171,26 +161,14 @@ void Realtime::end_rethinking() {
 // Appends the node intervals that end with the sample.
 void Realtime::follow(const ImuSample& sample, const AttitudeSample& attitude,
                       std::vector<HeaveStep>& steps) {
-  const double share =
-      std::max(1.0 / static_cast<double>(++samples_), guard_.usual_interval_s() / kMotionMemory_s);
-  motion_.follow(attitude, share);
-  disturbance_.add(disturbance_m2ps3(attitude, sample.flags, settings_.sensor.gravity_mps2) +
-                   turned_offset_m2ps3(attitude, motion_, settings_.sensor));
-  if (sample.flags & flag::kGap)
-    disturbance_.add_gap(
-        unseen_speed_mps(static_cast<double>(sample.utime - integrator_.last_utime()) * kMicrosecond),
-        kFineInterval_s);
-  force_.add(sample.f_B);
-  Eigen::Array3d up;
-  up << -attitude.a_N.z(), gyro_scale_leaks_mps2(attitude, motion_, sample.f_B);
-  integrator_.add(sample.utime, up, [&](std::int64_t, const LevelIncrement& increment) {
-    steps.push_back({increment, disturbance_.mean(), force_.change_mps2()});
-    disturbance_ = {};
-    whole_.push_back(increment);
+  const std::size_t first = steps.size();
+  path_.add(sample, attitude, guard_.usual_interval_s(), steps);
+  for (std::size_t i = first; i < steps.size(); ++i) {
+    whole_.push_back(steps[i].increment);
     if (std::ssize(whole_) > filter_.order()) whole_.pop_front();
-    due_ |= identifier_.add(filter_.without_leaks(increment));
+    due_ |= identifier_.add(filter_.without_leaks(steps[i].increment));
     ++nodes_;
-  });
+  }
 }
 
 void Realtime::filter(const HeaveStep& step) {
@@ -241,7 +219,7 @@ bool Realtime::lost() {
 // The sea is known by its accelerations: path, speed and offset begin anew.
 void Realtime::find_again() {
   const double offset_mps2 =
-      std::hypot(offset_sigma_mps2(settings_.sensor), kOffsetDoubt * motion_.excess_mps2);
+      std::hypot(offset_sigma_mps2(settings_.sensor), kOffsetDoubt * path_.motion().excess_mps2);
   filter_ = HeaveFilter(identifier_.model(), offset_mps2, kScaleDoubt * settings_.sensor.gyro_scale_sigma);
   settled_nodes_ = 0;
   beyond_ = 0;
@@ -329,7 +307,7 @@ HeaveFilter Realtime::filtered(const Calm::Since* calm, const std::vector<HeaveS
                                const SeaModel& sea) const {
   if (calm) return Calm::risen(*calm, sea, rest_level_m_);
   const double elapsed_s = static_cast<double>(nodes_) * kFineInterval_s;
-  HeaveFilter filter(sea, offset_sigma_mps2(motion_, sea, elapsed_s, settings_.sensor),
+  HeaveFilter filter(sea, offset_sigma_mps2(path_.motion(), sea, elapsed_s, settings_.sensor),
                      kScaleDoubt * settings_.sensor.gyro_scale_sigma);
   for (const HeaveStep& step : steps) filter.step(step);
   return filter;
@@ -362,8 +340,8 @@ AttitudeSample Realtime::rethink() {
   const std::vector<AttitudeSample> attitude =
       smooth_attitude(first_, attitude_settings(settings_.sensor), &attitude_, start_ ? &*start_ : nullptr);
   start_ = attitude.front();
-  samples_ = nodes_ = 0;
-  motion_ = {};
+  nodes_ = 0;
+  path_.forget_motion();
   identifier_.restart();
   start_path(first_.front(), attitude.front());
   std::vector<HeaveStep> steps;
@@ -414,16 +392,16 @@ void Realtime::rethink_rise() {
 // Who looks at the waves would take a jump for one of them.
 void Realtime::tell_without_jump(HeaveFilter filter) {
   const HeaveFilter before = std::exchange(filter_, std::move(filter));
-  const LevelIncrement& partial = integrator_.partial();
-  const double since_s = integrator_.since_node_s();
+  const LevelIncrement& partial = path_.partial();
+  const double since_s = path_.since_node_s();
   jump_m_ += before.heave_m(partial, since_s) - filter_.heave_m(partial, since_s);
 }
 
 // Between which nodes the newest sample lies.
 void Realtime::locate(const AttitudeSample& attitude, Held& held) const {
   held.sample.q_NB = attitude.q_NB;
-  held.partial = integrator_.partial();
-  held.since_node_s = integrator_.since_node_s();
+  held.partial = path_.partial();
+  held.since_node_s = path_.since_node_s();
   held.tilt_sigma_rad = attitude.tilt_sigma_rad;
   held.node = nodes_;
 }
@@ -450,7 +428,7 @@ void Realtime::estimate(const Held& held, HeaveSample& out) const {
   }
   out.heave_m += jump_m_;
   out.heave_sigma_m = std::sqrt(variance + square(jump_m_) +
-                                systematic_variance_m2(filter_.model(), motion_, settings_.sensor));
+                                systematic_variance_m2(filter_.model(), path_.motion(), settings_.sensor));
 }
 
 void Realtime::release(std::int64_t until_utime, Output& output) {

@@ -16,8 +16,8 @@
 
 #include "estimator/attitude/attitude_filter.h"
 #include "estimator/heave/calm.h"
-#include "estimator/heave/disturbance.h"
 #include "estimator/heave/heave_filter.h"
+#include "estimator/heave/heave_steps.h"
 #include "estimator/heave/sea_identifier.h"
 #include "estimator/heave/wave_counter.h"
 #include "estimator/method.h"
@@ -37,15 +37,6 @@ class Realtime : public Method {
     LevelIncrement partial;  // from the node before it
     double since_node_s = 0, tilt_sigma_rad = 0;
     std::int64_t node = 0;  // number of that node
-  };
-  struct MeanForce {  // specific force in the body's axes, over a node interval
-    Vector3d sum_B = Vector3d::Zero(), before_B = Vector3d::Zero();
-    int count = 0;
-    void add(const Vector3d& f_B) {
-      sum_B += f_B;
-      ++count;
-    }
-    double change_mps2();  // from the interval before; the next one begins
   };
   struct Rise {  // out of a calm, for as long as its end is gone through again
     Calm calm;
@@ -83,7 +74,7 @@ class Realtime : public Method {
   MethodSettings settings_;
   SampleGuard guard_;
   AttitudeFilter attitude_;
-  Integrator<Eigen::Array3d> integrator_;
+  HeaveSteps path_;
   SeaIdentifier identifier_;
   HeaveFilter filter_;
   WaveCounter counter_;
@@ -96,17 +87,14 @@ class Realtime : public Method {
   double jump_m_ = 0;                 // of heave when it was, or by a rest: taken back, and fading
   std::deque<LevelIncrement> whole_;  // the newest node intervals, newest last
   std::deque<Held> held_;
-  std::int64_t samples_ = 0, nodes_ = 0, settled_nodes_ = 0;
+  std::int64_t nodes_ = 0, settled_nodes_ = 0;
   std::int32_t pending_flags_ = 0;
   static constexpr int kOldEnough = 120, kOldestEnough = 480;
   int old_enough_ = kOldEnough;  // fine nodes of one sea before another one is believed
   double rest_level_m_ = 0;      // of the calm's zero, from the mean level of the sea before it
   double swell_ = 0;             // as last chosen
   std::int64_t chosen_at_ = 0, thought_at_ = 0;  // nodes, when it was, and when all was last gone through
-  MeanDisturbance disturbance_;                  // since the last node
-  MeanForce force_;
-  Motion motion_;
-  int beyond_ = 0;  // nodes in a row with heave that its sea does not reach
+  int beyond_ = 0;                               // nodes in a row with heave that its sea does not reach
   bool started_ = false, rethinks_ = true, due_ = false;
 };
 
