@@ -1,11 +1,14 @@
 #include "lcmtypes/disk.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
+#include <memory>
 #include <stdexcept>
 
 #include "lcmtypes/error.h"
@@ -35,6 +38,21 @@ bool is_of_the_machine(const std::error_code& why) {
 void refuse_place(const std::error_code& why, const std::string& sentence) {
   if (is_of_the_machine(why)) throw std::runtime_error(sentence);
   throw UserError(sentence);
+}
+
+std::string content_of(const fs::path& path, std::string_view expected) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  std::string content;
+  std::array<char, 1 << 16> block;
+  std::size_t got = 0;
+  while (file && (got = std::fread(block.data(), 1, block.size(), file.get())) > 0)
+    content.append(block.data(), got);
+  // A folder opens as a file does, and fails at its first byte.
+  const std::error_code error(!file || std::ferror(file.get()) != 0 ? errno : 0, std::generic_category());
+  if (error)
+    refuse_place(
+        error, fmt::format("{}: cannot be read: {}; expected {}", path.string(), error.message(), expected));
+  return content;
 }
 
 void rename_whole(const fs::path& from, const fs::path& to) {

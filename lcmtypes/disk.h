@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 namespace waverig {
@@ -13,6 +14,9 @@ bool is_of_the_machine(const std::error_code& why);
 // Of a place that cannot be written, which the sentence names: throws UserError, where the machine is to
 // blame std::runtime_error.
 [[noreturn]] void refuse_place(const std::error_code& why, const std::string& sentence);
+
+// All that a file holds. Throws UserError, which names it and what was expected, where it cannot be read.
+std::string content_of(const std::filesystem::path& path, std::string_view expected);
 
 // Gives a finished file or folder its own name, so that it is whole under it after a loss of power too: what
 // it holds is on the disk before it has the name, and the name before this returns. The files of a folder are

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 
 namespace waverig::render {
 namespace {
@@ -88,7 +88,7 @@ const std::vector<std::uint8_t>& PngEncoder::encode(const Image& image, const Pn
 }
 
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size) {
-  evaluation::write_atomically(path, {static_cast<const char*>(data), size});
+  write_atomically(path, {static_cast<const char*>(data), size});
 }
 
 }  // namespace waverig::render

@@ -4,12 +4,11 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "estimator/calibration/readable_json.h"
-#include "estimator/calibration/whole_file.h"
+#include "lcmtypes/atomic_file.h"
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::estimator {
@@ -216,15 +215,11 @@ SensorCalibration calibration_from_json(const std::string& text, const std::stri
 }
 
 void store_calibration(const SensorCalibration& calibration, const std::filesystem::path& path) {
-  write_whole(path, to_json(calibration));
+  write_atomically(path, to_json(calibration));
 }
 
 SensorCalibration load_calibration(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw UserError(fmt::format("{}: cannot be read: expected a calibration file", path.string()));
-  return calibration_from_json(text.str(), path.string());
+  return calibration_from_json(content_of(path, "a calibration file"), path.string());
 }
 
 }  // namespace waverig::estimator

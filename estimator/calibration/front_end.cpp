@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 
-#include "estimator/calibration/whole_file.h"
+#include "lcmtypes/atomic_file.h"
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::estimator {
@@ -273,15 +272,11 @@ FrontEndCalibration front_end_calibration_from_json(const std::string& text, con
 }
 
 void save(const FrontEndCalibration& calibration, const std::filesystem::path& path) {
-  write_whole(path, to_json(calibration));
+  write_atomically(path, to_json(calibration));
 }
 
 FrontEndCalibration load_front_end_calibration(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw UserError(path.string() + ": cannot be read: expected a front-end calibration as JSON");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return front_end_calibration_from_json(text.str(), path.string());
+  return front_end_calibration_from_json(content_of(path, "a front-end calibration as JSON"), path.string());
 }
 
 }  // namespace waverig::estimator

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "estimator/types.h"
 
 namespace waverig::evaluation {

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <tuple>
 
 #include "estimator/evaluation/results_io.h"
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::evaluation {
@@ -18,14 +19,8 @@ namespace {
 constexpr const char* kSettingsFile = "campaign.toml";
 constexpr const char* kCalibrationFile = "calibration.json";
 
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw UserError(
-        fmt::format("{}: cannot be read; expected the resolved settings of a shard", path.string()));
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+std::string settings_of(const fs::path& shard) {
+  return content_of(shard / kSettingsFile, "the resolved settings of a shard");
 }
 
 UserError differs(const fs::path& a, const fs::path& b, const char* what, const std::string& in_a,
@@ -36,7 +31,7 @@ UserError differs(const fs::path& a, const fs::path& b, const char* what, const 
 
 // First line in which two texts differ, for the complaint.
 UserError settings_differ(const fs::path& a, const fs::path& b) {
-  std::istringstream lines_a(text_of(a)), lines_b(text_of(b));
+  std::istringstream lines_a(settings_of(a)), lines_b(settings_of(b));
   std::string line_a, line_b;
   int line = 0;
   bool more = true;
@@ -49,7 +44,20 @@ UserError settings_differ(const fs::path& a, const fs::path& b) {
     ++line;
   }
   return UserError(fmt::format("{} and {}: line {} differs ('{}' and '{}'); expected shards of one campaign",
-                               a.string(), b.string(), line, line_a, line_b));
+                               (a / kSettingsFile).string(), (b / kSettingsFile).string(), line, line_a,
+                               line_b));
+}
+
+// What merge_into copies is what the results say.
+void check_calibration(const fs::path& shard, const CampaignResults& results) {
+  using Json = nlohmann::json;
+  const fs::path file = shard / kCalibrationFile;
+  if (results.calibration_json.empty() && !fs::exists(file)) return;
+  constexpr const char* kExpected = "the calibration that the shard's results hold";
+  const Json there = Json::parse(content_of(file, kExpected), nullptr, false),
+             held = Json::parse(results.calibration_json, nullptr, false);
+  if (!(there == held))  // what is no JSON equals nothing
+    throw UserError(fmt::format("{}: is another one; expected {}", file.string(), kExpected));
 }
 
 }  // namespace
@@ -58,11 +66,10 @@ CampaignResults merged(std::span<const fs::path> shards, std::span<const std::st
   if (shards.empty()) throw UserError("merge: no shards; expected at least one results directory");
   CampaignResults all;
   std::map<std::pair<std::string, std::string>, const fs::path*> holder;  // by run and method
-  const std::string settings = text_of(shards.front() / kSettingsFile);
+  const std::string settings = settings_of(shards.front());
   for (const fs::path& shard : shards) {
     CampaignResults part = read_results(shard);
-    if (text_of(shard / kSettingsFile) != settings)
-      throw settings_differ(shards.front() / kSettingsFile, shard / kSettingsFile);
+    if (settings_of(shard) != settings) throw settings_differ(shards.front(), shard);
     if (&shard == &shards.front()) {
       all = part;
       all.runs.clear();
@@ -77,9 +84,9 @@ CampaignResults merged(std::span<const fs::path> shards, std::span<const std::st
       throw UserError(fmt::format("{} and {}: calibration differs; expected shards of one campaign",
                                   shards.front().string(), shard.string()));
     for (RunResult& run : part.runs) {
-      if (const fs::path log = shard / "runs" / (run.run + ".lcm"); !fs::exists(log))
-        throw UserError(
-            fmt::format("{}: is not there; expected the log of a run that the results hold", log.string()));
+      if (const fs::path log = shard / "runs" / (run.run + ".lcm"); !fs::is_regular_file(log))
+        throw UserError(fmt::format("{}: is {}; expected the log of a run that the results hold",
+                                    log.string(), fs::exists(log) ? "no file" : "not there"));
       const auto [at, fresh] = holder.try_emplace({run.run, run.method}, &shard);
       if (!fresh)
         throw UserError(
@@ -88,6 +95,7 @@ CampaignResults merged(std::span<const fs::path> shards, std::span<const std::st
       all.runs.push_back(std::move(run));
     }
   }
+  check_calibration(shards.front(), all);
   std::sort(all.runs.begin(), all.runs.end(), [](const RunResult& a, const RunResult& b) {
     return std::tie(a.period_s, a.height_m, a.repeat, a.run, a.method) <
            std::tie(b.period_s, b.height_m, b.repeat, b.run, b.method);

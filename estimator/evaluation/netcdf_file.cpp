@@ -11,15 +11,15 @@
 #include <string_view>
 #include <vector>
 
-#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/flag_names.h"
 #include "estimator/evaluation/waves_csv.h"
+#include "lcmtypes/atomic_file.h"
 
 namespace waverig::evaluation {
 namespace {
 
-// One NetCDF file; nothing of it is left unless committed. Made in memory, since HDF5 crashes on a disk that is
-// full; its file is padded with zeros to whole blocks of 64 KiB then.
+// One NetCDF file; nothing of it is left unless committed. Made in memory, since HDF5 crashes on a disk that
+// is full; its file is padded with zeros to whole blocks of 64 KiB then.
 class File {
  public:
   explicit File(std::filesystem::path path) : path_(std::move(path)) {

@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
-#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/results_fields.h"
 #include "estimator/evaluation/results_io.h"
+#include "lcmtypes/atomic_file.h"
+#include "lcmtypes/disk.h"
 
 namespace waverig::evaluation {
 namespace {
@@ -55,13 +54,7 @@ class JsonFile {
 };
 
 Json parsed(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path))
-    throw UserError(
-        fmt::format("{}: cannot be read; expected the results of a finished campaign", path.string()));
-  std::ostringstream text;
-  text << file.rdbuf();
-  const std::string all = text.str();
+  const std::string all = content_of(path, "the results of a finished campaign");
   try {
     return Json::parse(all);
   } catch (const Json::parse_error& error) {

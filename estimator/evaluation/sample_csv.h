@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "estimator/evaluation/csv_reader.h"
 #include "estimator/types.h"
 

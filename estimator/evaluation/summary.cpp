@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/flag_names.h"
 #include "estimator/evaluation/height_statistics.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/flags.h"
 
 namespace waverig::evaluation {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 
 namespace waverig::evaluation {
 

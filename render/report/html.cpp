@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "render/report/report_assets.h"
 #include "render/svg_painter.h"
@@ -84,15 +83,6 @@ std::string HtmlTable::html(Caption caption, bool sortable) const {
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";
-}
-
-std::string content_of(const std::filesystem::path& path, std::string_view expected) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  // A folder opens as a file does, and fails at its first byte.
-  if (!file || (file.peek() != std::ifstream::traits_type::eof() && !(content << file.rdbuf())) || file.bad())
-    throw UserError(fmt::format("{}: cannot be read; expected {}", path.string(), expected));
-  return content.str();
 }
 
 std::string html_figure(const std::filesystem::path& png, std::string_view caption) {

@@ -46,9 +46,6 @@ class HtmlTable {
   std::vector<Row> rows_;
 };
 
-// What a file holds. Throws UserError with what was expected where it cannot be read.
-std::string content_of(const std::filesystem::path& path, std::string_view expected);
-
 // A picture inside the page (base64), that opens large. Throws UserError where
 // the file cannot be read.
 std::string html_figure(const std::filesystem::path& png, std::string_view caption);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "render/figures/settings.h"
 #include "render/report/html.h"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <sstream>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "rig/bench/simulation/devices.h"
 #include "rig/settings/toml_reader.h"
@@ -135,11 +135,9 @@ const Instrument* Laboratory::instrument(std::string_view name) const {
 const Port* Laboratory::port(std::string_view name) const { return find_named(ports, name); }
 
 std::string fingerprint(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) throw UserError(file.string() + ": cannot be read");
   std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a: to notice a change, not to resist a forger
-  for (const char c : text.str()) hash = (hash ^ static_cast<std::uint8_t>(c)) * 0x100000001b3ULL;
+  for (const char c : content_of(file, "a file of the sequence"))
+    hash = (hash ^ static_cast<std::uint8_t>(c)) * 0x100000001b3ULL;
   return fmt::format("{:016x}", hash);
 }
 

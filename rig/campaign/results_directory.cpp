@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "rig/campaign/settings.h"
@@ -16,13 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char *kSettingsFile = "campaign.toml", *kCalibrationFile = "calibration.json";
-
-std::string read_text(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+constexpr const char* kResolved = "the resolved settings of a campaign";
 
 fs::path beside(fs::path directory, const char* suffix) { return directory += suffix; }
 
@@ -114,7 +106,7 @@ void ResultsDirectory::claim(const std::string& resolved_settings, const std::st
   const fs::path settings = working_ / kSettingsFile;
   const std::string made_by = fmt::format("# waverig {}\n", version);
   if (fs::exists(settings)) {
-    const std::string begun = read_text(settings);
+    const std::string begun = content_of(settings, kResolved);
     if (!begun.starts_with(made_by))
       throw UserError(
           fmt::format("--resume: {}:1: '{}': was begun by another version; expected '# waverig {}', or "
@@ -125,7 +117,7 @@ void ResultsDirectory::claim(const std::string& resolved_settings, const std::st
           fmt::format("--resume: {}: was begun with other settings; expected the same campaign and seed",
                       settings.string()));
   }
-  evaluation::write_atomically(settings, made_by + resolved_settings);
+  write_atomically(settings, made_by + resolved_settings);
 }
 
 void ResultsDirectory::finish() {
@@ -143,7 +135,7 @@ void ResultsDirectory::finish() {
 
 void refuse_other_campaign(const fs::path& from, const fs::path& to) {
   const fs::path settings = to / kSettingsFile;
-  if (fs::exists(settings) && read_text(settings) != read_text(from / kSettingsFile))
+  if (fs::exists(settings) && content_of(settings, kResolved) != content_of(from / kSettingsFile, kResolved))
     throw UserError(fmt::format("--out {}: {} is of another campaign than {}; expected a new directory",
                                 to.string(), settings.string(), (from / kSettingsFile).string()));
 }

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "estimator/compass/tilt_study.h"
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "render/figure_writer.h"
 #include "rig/campaign/results_directory.h"
 #include "rig/cli/commands.h"
@@ -68,11 +68,11 @@ int analyse_compass(const CompassArguments& arguments) {
   const estimator::TiltStudy study = estimator::run_tilt_study(arguments.study);
   const std::vector<BorderPoint> border = border_of(arguments.study);
 
-  evaluation::write_atomically(directory.working() / "settings.toml",
-                               fmt::format("command = \"{}\"\nversion = \"{}\"\nruns = {}\nseed = {}\n",
-                                           command, kVersion, arguments.study.runs, arguments.study.seed));
-  evaluation::write_atomically(directory.working() / "compass.csv", csv(study));
-  evaluation::write_atomically(directory.working() / "border.csv", border_csv(border));
+  write_atomically(directory.working() / "settings.toml",
+                   fmt::format("command = \"{}\"\nversion = \"{}\"\nruns = {}\nseed = {}\n", command,
+                               kVersion, arguments.study.runs, arguments.study.seed));
+  write_atomically(directory.working() / "compass.csv", csv(study));
+  write_atomically(directory.working() / "border.csv", border_csv(border));
   std::filesystem::create_directories(directory.figures());
   render::Canvas canvas;
   const render::Provenance provenance{kVersion, command, std::to_string(arguments.study.seed)};

@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "rig/bench/history.h"
 #include "rig/bench/report/live_view.h"
@@ -82,20 +82,20 @@ int conclude(const Sequence& sequence, const BenchArguments& arguments, const Be
   if (analysis) {
     verdicts = hold_against_limits(sequence, *analysis);
     save(analysis->calibration, out / "calibration.json");
-    evaluation::write_atomically(out / "channels.csv", channels_csv(*analysis));
+    write_atomically(out / "channels.csv", channels_csv(*analysis));
     fmt::print("{}", table_of(verdicts));
     const fs::path history = arguments.history.empty()
                                  ? fs::absolute(out).lexically_normal().parent_path() / "calibrations"
                                  : fs::path(arguments.history);
     fmt::print("Kept:    {} in {}\n", History(history).keep(analysis->calibration), history.string());
   }
-  evaluation::write_atomically(out / "steps.csv", steps_csv(store));
-  evaluation::write_atomically(out / "junit.xml", junit_xml(sequence, store, verdicts));
+  write_atomically(out / "steps.csv", steps_csv(store));
+  write_atomically(out / "junit.xml", junit_xml(sequence, store, verdicts));
   const Analysis* found = analysis ? &*analysis : nullptr;
   const std::vector<BenchFigure> figures = bench_figures(sequence, store, found);
   draw_figures(figures, out, kVersion);
-  evaluation::write_atomically(out / "report.html", bench_report_html(sequence, store, found, verdicts,
-                                                                      figures, out, command_line(arguments)));
+  write_atomically(out / "report.html", bench_report_html(sequence, store, found, verdicts, figures, out,
+                                                          command_line(arguments)));
   const bool passed = std::ranges::all_of(verdicts, &Verdict::passed);
   fmt::print("Outcome: {}{}\nResults: {}\nReport:  {}\n", result.outcome, passed ? "" : ", limits exceeded",
              arguments.out, (out / "report.html").string());

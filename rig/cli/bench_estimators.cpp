@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "rig/campaign/coverage.h"
 #include "rig/campaign/sweep.h"
@@ -176,7 +176,7 @@ void cover(const BenchEstimatorsArguments& arguments, int rigs) {
                         100 * c.setting.height_m, c.rigs, inside, 100 * c.mean_error, 100 * c.rms_error,
                         100 * c.predicted);
   }
-  if (!arguments.out.empty()) evaluation::write_atomically(fs::path(arguments.out) / "coverage.csv", text);
+  if (!arguments.out.empty()) write_atomically(fs::path(arguments.out) / "coverage.csv", text);
 }
 
 int bench_estimators(const BenchEstimatorsArguments& arguments) {
@@ -204,8 +204,8 @@ int bench_estimators(const BenchEstimatorsArguments& arguments) {
     }
   }
   if (!arguments.out.empty()) {
-    evaluation::write_atomically(fs::path(arguments.out) / "estimators.csv", csv(rows));
-    evaluation::write_atomically(fs::path(arguments.out) / "gain_and_lag.csv", transfer_csv(rows));
+    write_atomically(fs::path(arguments.out) / "estimators.csv", csv(rows));
+    write_atomically(fs::path(arguments.out) / "gain_and_lag.csv", transfer_csv(rows));
   }
   const int rigs = arguments.rigs >= 0 ? arguments.rigs : (arguments.full ? 200 : 0);
   if (rigs > 0) cover(arguments, rigs);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "render/figure_writer.h"
 #include "rig/bench/history.h"

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/compare.h"
 #include "estimator/evaluation/results_io.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "rig/cli/commands.h"
 
@@ -26,7 +26,7 @@ int compare(const CompareArguments& arguments) {
     throw UserError(
         fmt::format("{} and {}: no period, height and method in common; expected two campaigns of one kind",
                     arguments.baseline, arguments.candidate));
-  if (!arguments.csv.empty()) evaluation::write_atomically(arguments.csv, evaluation::comparison_csv(cells));
+  if (!arguments.csv.empty()) write_atomically(arguments.csv, evaluation::comparison_csv(cells));
   fmt::print("{}", evaluation::comparison_table(cells));
   return evaluation::any_worse(cells) ? 1 : 0;
 }

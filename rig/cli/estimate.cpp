@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "estimator/calibration/accelerometer_calibration.h"
-#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/heave_csv.h"
 #include "estimator/evaluation/heave_spectrum.h"
 #include "estimator/evaluation/netcdf_file.h"
@@ -18,6 +17,7 @@
 #include "estimator/evaluation/waves_csv.h"
 #include "estimator/evaluation/zero_crossing.h"
 #include "estimator/method.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
 #include "rig/campaign/sensor_unit.h"
@@ -239,7 +239,7 @@ int estimate(const EstimateArguments& arguments) {
   evaluation::take_sea(summary, seas);
   const std::string json = summary_json(summary, arguments, record, collector.offset_changes());
   end_if_told();
-  evaluation::AtomicFile waves_file(out / "waves.csv"), summary_file(out / "summary.json");
+  AtomicFile waves_file(out / "waves.csv"), summary_file(out / "summary.json");
   waves_file.write(evaluation::waves_csv(waves));
   summary_file.write(json);
   collector.flush();

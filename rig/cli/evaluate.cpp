@@ -11,7 +11,6 @@
 #include <numbers>
 #include <vector>
 
-#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/even_series.h"
 #include "estimator/evaluation/heave_against_truth.h"
 #include "estimator/evaluation/heave_csv.h"
@@ -23,6 +22,7 @@
 #include "estimator/evaluation/summary.h"
 #include "estimator/evaluation/waves_csv.h"
 #include "estimator/evaluation/zero_crossing.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
 #include "rig/campaign/results_directory.h"
@@ -76,7 +76,7 @@ int evaluate_heave(const EvaluateArguments& arguments) {
     summary.heave_lag_s = comparison.lag_s();
   }
   make_out_directory(arguments.out);
-  evaluation::AtomicFile waves_file(fs::path(arguments.out) / "waves.csv"),
+  AtomicFile waves_file(fs::path(arguments.out) / "waves.csv"),
       summary_file(fs::path(arguments.out) / "summary.json");
   waves_file.write(evaluation::waves_csv(waves));
   waves_file.flush();

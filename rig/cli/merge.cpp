@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/results_io.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "render/report/report.h"
 #include "rig/campaign/directory_lock.h"
@@ -64,8 +64,7 @@ int merge(const MergeArguments& arguments) {
     estimator::save(front_end->calibration, directory.working() / rig::kFrontEndFile);
   const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   draw_campaign(results, directory.working(), rig::calibrate(campaign.settings).unit, jobs);
-  evaluation::write_atomically(directory.working() / "report.html",
-                               render::report_html(results, directory.working()));
+  write_atomically(directory.working() / "report.html", render::report_html(results, directory.working()));
   directory.finish();
   fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover),
              arguments.out, (std::filesystem::path(arguments.out) / "report.html").string());

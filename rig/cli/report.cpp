@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "estimator/evaluation/atomic_file.h"
 #include "estimator/evaluation/results_io.h"
+#include "lcmtypes/atomic_file.h"
 #include "render/report/report.h"
 #include "rig/cli/commands.h"
 
@@ -24,10 +24,9 @@ int report(const ReportArguments& arguments) {
   const bool compares = !arguments.baseline.empty();
   const fs::path out = !arguments.out.empty() ? fs::path(arguments.out)
                                               : directory / (compares ? "comparison.html" : "report.html");
-  evaluation::write_atomically(
-      out, compares ? render::comparison_html(evaluation::read_results(arguments.baseline),
-                                              arguments.baseline, results, directory)
-                    : render::report_html(results, directory));
+  write_atomically(out, compares ? render::comparison_html(evaluation::read_results(arguments.baseline),
+                                                           arguments.baseline, results, directory)
+                                 : render::report_html(results, directory));
   fmt::print("{}\n", out.string());
   return 0;
 }

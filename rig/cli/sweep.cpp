@@ -8,7 +8,7 @@
 #include <optional>
 #include <thread>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "render/report/report.h"
 #include "rig/campaign/sweep.h"
@@ -62,7 +62,7 @@ int sweep(const SweepArguments& arguments) {
     estimator::save(front_end->calibration, directory.working() / rig::kFrontEndFile);
   const rig::CalibratedUnit calibrated = rig::calibrate(campaign.settings);
   if (!calibrated.report_json.empty())
-    evaluation::write_atomically(directory.working() / "calibration.json", calibrated.report_json);
+    write_atomically(directory.working() / "calibration.json", calibrated.report_json);
 
   const rig::SweepOptions options{
       .jobs = arguments.jobs,
@@ -74,8 +74,7 @@ int sweep(const SweepArguments& arguments) {
   const evaluation::CampaignResults results =
       rig::run_campaign(campaign, calibrated, rig::runs_of_shard(plan, shard), directory, options);
   draw_campaign(results, directory.working(), calibrated.unit, arguments.jobs);
-  evaluation::write_atomically(directory.working() / "report.html",
-                               render::report_html(results, directory.working()));
+  write_atomically(directory.working() / "report.html", render::report_html(results, directory.working()));
   set_last_words({});
   directory.finish();
   fmt::print("{}\nResults: {}\nReport:  {}\n", rig::results_table(results, campaign.settings.sweep.mover),

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numeric>
 #include <sstream>
 #include <utility>
 
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::rig {
@@ -237,13 +237,8 @@ void TomlTable::refuse_unknown(const Shared& shared) {
   for (const auto& child : shared.children) refuse_unknown(*child);
 }
 
-TomlFile::TomlFile(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || (in.peek() != std::ifstream::traits_type::eof() && !(text << in.rdbuf())) || in.bad())
-    throw UserError(fmt::format("{}: cannot be read; expected a TOML file", path.string()));
-  *this = TomlFile(text.str(), path.string());
-}
+TomlFile::TomlFile(const std::filesystem::path& path)
+    : TomlFile(content_of(path, "a TOML file"), path.string()) {}
 
 TomlFile::TomlFile(std::string_view text, const std::string& name) {
   try {

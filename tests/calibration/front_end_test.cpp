@@ -64,6 +64,17 @@ TEST(FrontEndFile, NamesFileKeyValueAndWhatWasExpected) {
   }
 }
 
+// As --scale-factors where somebody names the run's directory.
+TEST(FrontEndFile, IsNoFolder) {
+  const std::string folder = std::filesystem::temp_directory_path();
+  try {
+    load_front_end_calibration(folder);
+    ADD_FAILURE() << "taken";
+  } catch (const UserError& error) {
+    EXPECT_EQ(error.what(), folder + ": cannot be read: Is a directory; expected a front-end calibration as JSON");
+  }
+}
+
 TEST(FrontEndFile, OfAnythingElseIsRefusedInOneLine) {
   for (const char* text : {"", "3", "[]", "{}", "null", "\xff\xfe", "{\"schema\": 1e999}"}) {
     try {

@@ -124,6 +124,27 @@ TEST_F(Merge, RefusesAShardWithoutTheLogOfARunNamingIt) {
   EXPECT_NE(said.find((two / "runs/b.lcm").string()), std::string::npos) << said;
 }
 
+TEST_F(Merge, RefusesAShardWhoseFilesAreNotThoseOfItsResults) {
+  calibration_json = "{\"unit\": 1}";
+  const auto one = shard("one", {run("a", 6, 0)});
+  const std::string file = (one / "calibration.json").string();
+  EXPECT_EQ(refusal({one}).find(file + ": cannot be read: No such file"), 0u) << refusal({one});
+  fs::create_directory(file);
+  EXPECT_EQ(refusal({one}).find(file + ": cannot be read: Is a directory; expected the calibration"), 0u);
+  fs::remove(file);
+  for (const char* other : {"", "{\"unit\": 2}"}) {
+    scratch.write("one/calibration.json", other);
+    EXPECT_EQ(refusal({one}).find(file + ": is another one; expected the calibration"), 0u) << refusal({one});
+  }
+  scratch.write("one/calibration.json", "{\"unit\":1}\n");
+  EXPECT_EQ(refusal({one}), "not refused");
+  fs::remove_all(scratch.path() / "out");
+  const fs::path log = one / "runs/a.lcm";
+  fs::remove(log);
+  fs::create_directory(log);
+  EXPECT_EQ(refusal({one}).find(log.string() + ": is no file; expected the log"), 0u) << refusal({one});
+}
+
 TEST_F(Merge, RefusesTooFewShards) {
   expected = {"a", "b", "c"};
   const auto one = shard("one", {run("a", 6, 0)}), two = shard("two", {run("b", 6, 1)});

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "estimator/evaluation/height_statistics.h"
 #include "estimator/evaluation/summary.h"
 #include "estimator/evaluation/waves_csv.h"

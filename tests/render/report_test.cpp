@@ -289,7 +289,7 @@ TEST(Report, NamesAFileThatCannotBeRead) {
       report_html(example.results, example.folder.path());
       ADD_FAILURE() << name;
     } catch (const UserError& error) {
-      EXPECT_EQ(std::string(error.what()).find(path.string() + ": cannot be read; expected "), 0U) << error.what();
+      EXPECT_EQ(std::string(error.what()).find(path.string() + ": cannot be read: Is a directory; expected "), 0U) << error.what();
     }
     std::filesystem::remove(path);
   }

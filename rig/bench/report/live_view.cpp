@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 #include "render/figure_writer.h"
 #include "rig/bench/report/figures.h"
 
@@ -53,8 +53,8 @@ void LiveView::draw() {
   if (sequence_.windows.empty()) return;
   const auto& png =
       render::png_bytes(windows_figure(sequence_.windows, traces_, sequence_.title, status_), canvas_, {});
-  evaluation::write_atomically(out_ / "live.png", {reinterpret_cast<const char*>(png.data()), png.size()});
-  if (!std::filesystem::exists(out_ / "live.html")) evaluation::write_atomically(out_ / "live.html", kPage);
+  write_atomically(out_ / "live.png", {reinterpret_cast<const char*>(png.data()), png.size()});
+  if (!std::filesystem::exists(out_ / "live.html")) write_atomically(out_ / "live.html", kPage);
 }
 
 }  // namespace waverig::rig::bench

@@ -4,11 +4,10 @@
 
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 #include <thread>
 
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
+#include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "rig/bench/simulation/simulated_laboratory.h"
 #include "rig/cli/nodes/nodes.h"
@@ -21,10 +20,7 @@ using namespace rig::bench;
 
 // The laboratory file with the addresses of the simulated one, all else as it was.
 std::string readdressed(const Laboratory& as_written, const Laboratory& simulated) {
-  std::ifstream in(as_written.file);
-  std::ostringstream stream;
-  stream << in.rdbuf();
-  std::string text = stream.str();
+  std::string text = content_of(as_written.file, "the laboratory");
   const auto replace = [&](const std::string& from, const std::string& to) {
     const std::string quoted = "\"" + from + "\"";
     for (std::size_t at = text.find(quoted); at != std::string::npos; at = text.find(quoted, at + to.size()))
@@ -55,7 +51,7 @@ int run_instruments_sim(const InstrumentsSimArguments& arguments) {
   if (!simulated.has_vxi11())
     fmt::print(stderr, "instruments-sim: no VXI-11: its port mapper needs port 111\n");
   if (!arguments.write.empty())
-    evaluation::write_atomically(arguments.write, readdressed(laboratory, simulated.addressed()));
+    write_atomically(arguments.write, readdressed(laboratory, simulated.addressed()));
   std::fflush(stdout);
   while (requests.next() != Request::kStop) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   return 0;

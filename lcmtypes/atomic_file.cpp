@@ -1,4 +1,4 @@
-#include "estimator/evaluation/atomic_file.h"
+#include "lcmtypes/atomic_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 #include "lcmtypes/disk.h"
 
-namespace waverig::evaluation {
+namespace waverig {
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), temporary_(path_) {
   temporary_ += fmt::format(".{}.partial", ::getpid());
@@ -53,4 +53,4 @@ void write_atomically(const std::filesystem::path& path, std::string_view text) 
   file.commit();
 }
 
-}  // namespace waverig::evaluation
+}  // namespace waverig

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string_view>
 
-namespace waverig::evaluation {
+namespace waverig {
 
 class AtomicFile {
  public:
@@ -32,4 +32,4 @@ class AtomicFile {
 
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace waverig::evaluation
+}  // namespace waverig
