@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <chrono>
 #include <memory>
+#include <string_view>
 
 #include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
@@ -16,7 +17,12 @@
 namespace waverig::rig::bench {
 namespace {
 
-// Only one bench at a time in a directory; the lock goes with the process, however it ends.
+// What the lock's file says, the one written over the other: that finds room on a full disk too.
+constexpr std::string_view kUnderWay = "under way\n", kTornDown = "torn down\n";
+static_assert(kUnderWay.size() == kTornDown.size());
+
+// Only one bench at a time in a directory; the lock goes with the process, however it ends. Its file tells a
+// run that was torn down from one that was killed, where the store takes no more.
 class DirectoryLock {
  public:
   explicit DirectoryLock(const std::filesystem::path& directory)
@@ -34,6 +40,16 @@ class DirectoryLock {
   DirectoryLock(const DirectoryLock&) = delete;
   DirectoryLock& operator=(const DirectoryLock&) = delete;
 
+  std::error_code say(std::string_view state) const {
+    const bool said = ::pwrite(descriptor_, state.data(), state.size(), 0) == std::ssize(state) &&
+                      ::fsync(descriptor_) == 0;
+    return {said ? 0 : errno, std::generic_category()};
+  }
+  bool says(std::string_view state) const {
+    std::string said(state.size(), '\0');
+    return ::pread(descriptor_, said.data(), said.size(), 0) == std::ssize(said) && said == state;
+  }
+
  private:
   int descriptor_;
 };
@@ -44,7 +60,7 @@ std::int64_t system_utime() {
       .count();
 }
 
-void check_same(const Sequence& sequence, const RunInfo& info, const BenchOptions& options) {
+void check_same(const Sequence& sequence, const RunInfo& info, bool torn_down, const BenchOptions& options) {
   for (const auto& [name, print] : sequence.fingerprints) {
     const auto found = info.files.find(name);
     if (found == info.files.end() || found->second != print)
@@ -56,11 +72,12 @@ void check_same(const Sequence& sequence, const RunInfo& info, const BenchOption
     throw UserError(fmt::format("{}: the run there is {}: expected --resume {} --simulate",
                                 options.out.string(), info.simulated ? "simulated" : "real",
                                 info.simulated ? "with" : "without"));
-  if (sequence.uninterrupted && info.outcome != "running" && !info.outcome.starts_with("done"))
+  const bool running = info.outcome == "running";
+  if (sequence.uninterrupted && !info.outcome.starts_with("done") && (!running || torn_down))
     throw UserError(
         fmt::format("{}: the run there ended and was torn down ({}), and its sequence cannot be interrupted: "
                     "expected a new run",
-                    options.out.string(), info.outcome));
+                    options.out.string(), running ? "its store was not told why" : info.outcome));
 }
 
 }  // namespace
@@ -77,9 +94,12 @@ BenchResult run_bench(const Sequence& given, const BenchOptions& options) {
   Store store = options.resume ? Store::open(file) : Store::create(file, fresh);
   const RunInfo info = store.info();
   if (options.resume) {
-    check_same(given, info, options);
+    check_same(given, info, lock.says(kTornDown), options);
     if (info.outcome.starts_with("done")) return {info.outcome, true};
   }
+  if (const std::error_code error = lock.say(kUnderWay))
+    refuse_place(
+        error, fmt::format("{}: not everything could be written: {}", options.out.string(), error.message()));
 
   const ResumeState state = store.resume_state();
   Sequence sequence = given;
@@ -97,6 +117,7 @@ BenchResult run_bench(const Sequence& given, const BenchOptions& options) {
   hooks.prompt = options.prompt;
   hooks.trace = options.trace;
   hooks.clear_stop = options.clear_stop;
+  hooks.breaks_off = [&] { lock.say(kTornDown); };
   if (laboratory) hooks.world_snapshot = [&] { return laboratory->snapshot(); };
   Runner runner(sequence, reactor, store, std::move(hooks));
   const std::string outcome = runner.run(options.resume);

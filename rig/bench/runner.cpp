@@ -69,6 +69,7 @@ std::string Runner::run(bool resume) {
     aborted = true;
     outcome = error.what();
     if (hooks_.clear_stop) hooks_.clear_stop();
+    if (hooks_.breaks_off) hooks_.breaks_off();
   }
   reactor_.heed_stop(false);
   tear_down(aborted);

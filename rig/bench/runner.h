@@ -27,6 +27,7 @@ struct RunnerHooks {
   std::function<void(const TraceRow&)> trace;      // every kTracePeriod_s of each port, as it comes
   std::function<std::string()> world_snapshot;     // of a simulated laboratory, kept with each step
   std::function<void()> clear_stop;                // after an interruption: the tear-down may wait again
+  std::function<void()> breaks_off;                // before what was interrupted is torn down; throws nothing
 };
 
 inline constexpr double kTracePeriod_s = 20;

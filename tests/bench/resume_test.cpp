@@ -1,6 +1,7 @@
 // A bench that is killed at random moments goes on and gives the same result to the bit.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -139,6 +140,35 @@ TEST(Resume, RefusesToGoOnWithAnUninterruptedSequenceThatWasTornDown) {
         << error.what();
   }
   EXPECT_EQ(Store::open(store_file(files.out())).steps().size(), before);
+}
+
+// The store, which took no more, still says that the run goes on.
+TEST(Resume, RefusesAnUninterruptedSequenceThatWasTornDownOnAFullDisk) {
+  const ShortSequence files("bias.toml", {{"duration = \"25 h\" ", "# "}});
+  const Sequence sequence = load_sequence(files.file());
+  BenchOptions options = options_for(files.out());
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const auto ignored = ::signal(SIGXFSZ, SIG_IGN);
+  int steps = 0;
+  options.progress = [&](const Progress&) {
+    const rlimit little{4000, before.rlim_max};
+    if (++steps == 15) ::setrlimit(RLIMIT_FSIZE, &little);
+  };
+  EXPECT_THROW(run_bench(sequence, options), std::runtime_error);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, ignored);
+  ASSERT_EQ(Store::open(store_file(files.out())).info().outcome, "running");
+  options.resume = true;
+  options.progress = nullptr;
+  try {
+    run_bench(sequence, options);
+    ADD_FAILURE() << "it went on";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("torn down (its store was not told why), and its sequence cannot be interrupted"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace
