@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <waverig/counts_t.hpp>
 #include <waverig/run_t.hpp>
@@ -31,6 +33,20 @@ RawSample raw_of(const counts_t& m) {
   return raw;
 }
 
+// sea_t as logs hold it from before it told hm0_systematic_sigma_m: that part is unknown in them, all else
+// the same.
+LogEvent with_systematic_part(LogEvent event) {
+  constexpr std::array<std::uint8_t, 8> kFingerprint = {0xdc, 0x3a, 0x2a, 0xfa, 0xde, 0xe2, 0xb9, 0x6f};
+  constexpr std::array<std::uint8_t, 8> kNaN = {0x7f, 0xf8};
+  constexpr std::size_t kSize = 140, kBefore = 48;  // fingerprint, two integers, three numbers
+  if (event.data.size() != kSize || !std::equal(kFingerprint.begin(), kFingerprint.end(), event.data.begin()))
+    return event;
+  const auto now = static_cast<std::uint64_t>(sea_t::getHash());
+  for (std::size_t i = 0; i < 8; ++i) event.data[i] = static_cast<std::uint8_t>(now >> (56 - 8 * i));
+  event.data.insert(event.data.begin() + kBefore, kNaN.begin(), kNaN.end());
+  return event;
+}
+
 // Sorts the events of one log into the record.
 class Loader {
  public:
@@ -56,7 +72,8 @@ class Loader {
       record_.waves[method(channel, channel::kWavePrefix)].push_back(
           estimator::wave_of(decoded<wave_t>(event)));
     } else if (channel.starts_with(channel::kSeaPrefix)) {
-      record_.seas[method(channel, channel::kSeaPrefix)].push_back(estimator::sea_of(decoded<sea_t>(event)));
+      record_.seas[method(channel, channel::kSeaPrefix)].push_back(
+          estimator::sea_of(decoded<sea_t>(with_systematic_part(event))));
     }
   }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
 #include <waverig/run_t.hpp>
 #include <waverig/truth_t.hpp>
 
@@ -88,6 +90,42 @@ TEST(RunRecord, RefusesALogCutAnywhere) {
     }
   }
   EXPECT_GE(refused, cuts - 1);
+}
+
+// As sea_t was: its fingerprint and its fields, numbered.
+TEST(RunRecord, ReadsASeaFromBeforeItToldItsSystematicPart) {
+  const Scratch scratch;
+  const auto path = scratch.path() / "old.lcm";
+  std::vector<std::uint8_t> bytes;
+  const auto put_word = [&](std::uint64_t word, int size) {
+    while (size-- > 0) bytes.push_back(static_cast<std::uint8_t>(word >> (8 * size)));
+  };
+  put_word(0xdc3a2afadee2b96f, 8);
+  put_word(1, 8);
+  put_word(2, 8);
+  for (int field = 3; field <= 16; ++field) put_word(std::bit_cast<std::uint64_t>(1.0 * field), 8);
+  put_word(17, 4);
+  const auto write = [&] {
+    EventLogWriter log(path);
+    log.write(1, channel::of_method(channel::kSeaPrefix, "spectral"), bytes.data(), bytes.size());
+    log.close();
+  };
+  write();
+  const RunRecord record = load_run(path);
+  ASSERT_EQ(record.seas.at("spectral").size(), 1u);
+  const estimator::SeaState& sea = record.seas.at("spectral").front();
+  EXPECT_EQ(sea.start_utime, 1);
+  EXPECT_EQ(sea.seq, 2);
+  EXPECT_EQ(sea.duration_s, 3);
+  EXPECT_EQ(sea.hm0_m, 4);
+  EXPECT_EQ(sea.hm0_sigma_m, 5);
+  EXPECT_TRUE(std::isnan(sea.hm0_systematic_sigma_m)) << "all of hm0_sigma_m, as far as one knows";
+  EXPECT_EQ(sea.tp_s, 6);
+  EXPECT_EQ(sea.check_factor, 16);
+  EXPECT_EQ(sea.flags, 17);
+  bytes[0] = 0xdd;  // neither the one nor the other
+  write();
+  EXPECT_THROW(load_run(path), UserError);
 }
 
 TEST(RunRecord, RefusesAMessageOfAnotherType) {
