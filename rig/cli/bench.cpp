@@ -161,8 +161,8 @@ void add_bench(CLI::App& app, Command& chosen) {
   command->add_option("--history", arguments->history,
                       "Directory to keep the calibration in; calibrations beside --out by default");
   command->footer(
-      "Exit status 1 where the run ended early, a step failed or a limit is exceeded. SIGINT and SIGTERM end "
-      "a run safely:\n"
+      "Exit status 1 where the run ended early, a step failed or a limit is exceeded. SIGINT, SIGTERM and "
+      "SIGHUP end a run safely:\n"
       "calibrator off, chamber to ambient.\n"
       "Examples:\n"
       "  waverig bench rig/sequences/scale_factor.toml --dry-run\n"

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "rig/bench/quantity.h"
+#include "rig/cli/signals.h"
 
 namespace waverig::cli {
 namespace {
@@ -66,13 +67,13 @@ bool BenchTerminal::ask(const std::string& question) {
 StopOnSignal::StopOnSignal() {
   struct sigaction action {};
   action.sa_handler = on_signal;
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
+  for (const int each : kEndSignals)
+    if (each != SIGHUP || !is_ignored(each)) ::sigaction(each, &action, nullptr);
 }
 
 StopOnSignal::~StopOnSignal() {
-  ::signal(SIGINT, SIG_DFL);
-  ::signal(SIGTERM, SIG_DFL);
+  for (const int each : kEndSignals)
+    if (each != SIGHUP || !is_ignored(each)) ::signal(each, SIG_DFL);
 }
 
 const std::atomic<bool>& StopOnSignal::asked() const { return stop_asked; }

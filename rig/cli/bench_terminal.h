@@ -29,7 +29,7 @@ class BenchTerminal {
   std::chrono::steady_clock::time_point drawn_;
 };
 
-// SIGINT and SIGTERM set the flag instead of ending the program, so that the bench is left safe; a second one
+// SIGINT, SIGTERM and SIGHUP set the flag instead of ending the program, so that the bench is left safe; a second one
 // ends it.
 class StopOnSignal {
  public:

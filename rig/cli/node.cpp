@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kSession =
     R"(Each node is a process of its own; they meet on the bus, in real time. The others first, motion last.
-Each ends well on SIGINT and SIGTERM.
+Each ends well on SIGINT, SIGTERM and SIGHUP.
 Example: a whole session on the simulated rig, calibration.json from a sweep of the campaign:
 
   RUN=T06.00s_H060.0cm_r1
@@ -187,7 +187,7 @@ void add_instruments_sim(CLI::App& nodes, Command& chosen) {
   command->add_option("--write", a->write,
                       "Write the laboratory file with the addresses of the simulated instruments");
   command->footer(
-      "Prints every way to every instrument and serves until SIGINT or SIGTERM.\n"
+      "Prints every way to every instrument and serves until SIGINT, SIGTERM or SIGHUP.\n"
       "Example:\n"
       "  waverig node instruments-sim rig/sequences/laboratory.toml &\n"
       "  lxi scpi --address 127.0.0.1 --port PORT --raw '*IDN?'\n"

@@ -25,14 +25,17 @@ void handle(void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
   action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
-  for (const int each : {SIGINT, SIGTERM}) {
-    struct sigaction before {};
-    ::sigaction(each, nullptr, &before);
-    if (before.sa_handler != SIG_IGN) ::sigaction(each, &action, nullptr);
-  }
+  for (const int each : kEndSignals)
+    if (!is_ignored(each)) ::sigaction(each, &action, nullptr);
 }
 
 }  // namespace
+
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  ::sigaction(signal, nullptr, &action);
+  return action.sa_handler == SIG_IGN;
+}
 
 void set_last_words(std::string_view line) {
   words_size = 0;

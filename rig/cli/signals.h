@@ -1,9 +1,16 @@
-// What SIGINT and SIGTERM do to a command that would leave something lying about. Where the program was
-// started with a signal ignored it stays so.
+// What the signals that ask for an end do to a command that would leave something lying about. Where the
+// program was started with a signal ignored it stays so.
 #pragma once
+#include <signal.h>
+
+#include <array>
 #include <string_view>
 
 namespace waverig::cli {
+
+// SIGHUP comes where the terminal was closed or its connection lost; under nohup it is ignored.
+inline constexpr std::array kEndSignals = {SIGINT, SIGTERM, SIGHUP};
+bool is_ignored(int signal);
 
 // For commands that may end anywhere: a signal says the line on stderr and ends the program. An empty one:
 // says nothing.

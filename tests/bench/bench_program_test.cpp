@@ -116,7 +116,11 @@ TEST(BenchProgram, KilledAndResumedItGivesTheSameFilesToTheByte) {
     EXPECT_EQ(bytes_of(bench.files.out("whole") / file), bytes_of(bench.files.out("killed") / file)) << file;
 }
 
-TEST(BenchProgram, SigtermLeavesTheBenchSafeAndSaysSo) {
+// SIGHUP: the terminal was closed, the connection to it lost.
+class Ended : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(BenchProgram, Ended, testing::Values(SIGTERM, SIGHUP));
+
+TEST_P(Ended, LeavesTheBenchSafeAndSaysSo) {
   const Bench bench;
   Program program = bench.start("out");
   const auto recording = [&] {
@@ -128,7 +132,7 @@ TEST(BenchProgram, SigtermLeavesTheBenchSafeAndSaysSo) {
     }
   };
   for (int i = 0; i < 3000 && !recording(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  ::kill(program.pid, SIGTERM);
+  ::kill(program.pid, GetParam());
   EXPECT_EQ(program.wait(), 1);
   const Store store = Store::open(bench.files.out() / "bench.sqlite");
   EXPECT_EQ(store.info().outcome, "stopped by the user");

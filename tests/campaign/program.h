@@ -25,16 +25,16 @@ inline Outcome run(const TemporaryDirectory& temporary, const std::string& argum
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(out), bytes_of(err)};
 }
 
-// Runs a command, waits for a file to be there, and ends the command by SIGTERM: its exit status as a shell
+// Runs a command, waits for a file to be there, and ends the command by a signal: its exit status as a shell
 // has it.
 inline Outcome ended_early(const TemporaryDirectory& temporary, const std::string& arguments,
-                           const std::string& file) {
+                           const std::string& file, const std::string& signal = "TERM") {
   temporary.write("end.sh", "cd '" + temporary.path().string() + "'\n" WAVERIG_PROGRAM " " + arguments +
                                 " >stdout 2>stderr &\n"
                                 "for i in $(seq 3000); do ls " +
                                 file +
                                 " >/dev/null 2>&1 && break; sleep 0.01; done\n"
-                                "kill -TERM $!\nwait $!\n");
+                                "kill -" + signal + " $!\nwait $!\n");
   const int status = std::system(("sh " + (temporary / "end.sh").string() + " 2>/dev/null").c_str());
   return {WEXITSTATUS(status), bytes_of(temporary / "stdout"), bytes_of(temporary / "stderr")};
 }

@@ -27,10 +27,12 @@ TEST(Program, LeavesNothingHalfWhereAnEstimateIsInterrupted) {
   record << "utime,ax,ay,az,gx,gy,gz\n";
   for (int row = 0; row < 1000000; ++row) record << row << "0000,0,0,-9.8,0,0,0\n";
   record.close();
-  const Outcome outcome =
-      ended_early(temporary, "estimate long.csv --method realtime --out out", "out/heave.csv.*");
-  EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
-  EXPECT_TRUE(std::filesystem::is_empty(temporary / "out"));
+  for (const auto& [name, number] : {std::pair{"TERM", SIGTERM}, {"HUP", SIGHUP}}) {
+    const Outcome outcome =
+        ended_early(temporary, "estimate long.csv --method realtime --out out", "out/heave.csv.*", name);
+    EXPECT_EQ(outcome.status, 128 + number) << outcome.err;
+    EXPECT_TRUE(std::filesystem::is_empty(temporary / "out")) << name;
+  }
 }
 
 TEST(Program, KeepsAnEarlierFilmWhereTheNextIsInterrupted) {

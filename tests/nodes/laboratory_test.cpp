@@ -272,6 +272,23 @@ TEST_F(Laboratory, DriveThatGoesAwayIsAnAlarmWithItsReason) {
   EXPECT_NE(node->err().find("alarm"), std::string::npos) << node->err();
 }
 
+// SIGHUP, as where the connection to the laboratory's machine is lost; under nohup it tells nothing.
+TEST_F(Laboratory, AClosedTerminalEndsANodeWell) {
+  for (const auto& [ignored, status] : {std::pair{false, 0}, {true, 128 + SIGKILL}}) {
+    const auto before = ::signal(SIGHUP, ignored ? SIG_IGN : SIG_DFL);  // as the node will have it
+    auto recorder = node("recorder", {"recorder", "--out", path("run.lcm"), "--replace"});
+    ::signal(SIGHUP, before);
+    ASSERT_TRUE(recorder->says("ready", 60s)) << recorder->err();
+    recorder->signal(SIGHUP);
+    if (ignored) {
+      std::this_thread::sleep_for(300ms);
+      recorder->signal(SIGKILL);
+    }
+    EXPECT_EQ(recorder->wait(60s), status) << recorder->err();
+    EXPECT_EQ(std::filesystem::exists(temporary_ / "run.lcm.part"), ignored);
+  }
+}
+
 TEST_F(Laboratory, RecorderToldToStopLeavesAWholeLog) {
   constexpr int kMessages = 2000;
   auto recorder = node("recorder", {"recorder", "--out", path("run.lcm")});

@@ -8,6 +8,8 @@
 #include <initializer_list>
 #include <limits>
 
+#include "rig/cli/signals.h"
+
 namespace waverig::cli {
 namespace {
 
@@ -22,6 +24,7 @@ std::int64_t read_ns(clockid_t clock) {
 Requests::Requests() : taken_{} {
   sigemptyset(&taken_);
   for (const int each : {SIGINT, SIGTERM, SIGUSR1, SIGUSR2}) sigaddset(&taken_, each);
+  if (!is_ignored(SIGHUP)) sigaddset(&taken_, SIGHUP);
   sigset_t blocked = taken_;
   sigaddset(&blocked, SIGPIPE);  // a reader that is gone shows as an error of the write
   pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
@@ -32,6 +35,7 @@ Request Requests::next() {
   switch (sigtimedwait(&taken_, nullptr, &at_once)) {
     case SIGINT:
     case SIGTERM:
+    case SIGHUP:
       return Request::kStop;
     case SIGUSR1:
       return Request::kHold;
