@@ -60,6 +60,13 @@ int CsvReader::find(std::string_view column) const {
   return at == columns_.end() ? -1 : static_cast<int>(at - columns_.begin());
 }
 
+void CsvReader::refuse_twice(std::initializer_list<std::string_view> columns) const {
+  for (const std::string_view column : columns)
+    if (std::ranges::count(columns_, column) > 1)
+      throw UserError(
+          fmt::format("{}, line 1: column '{}' is there twice; expected it once", name(), column));
+}
+
 bool CsvReader::next() {
   std::string_view line;
   if (!read_line(line)) return false;

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ class CsvReader {
   const std::vector<std::string>& columns() const { return columns_; }
   // Position of a column; -1 where the file has none of that name.
   int find(std::string_view column) const;
+  // Throws UserError where the header has one of them twice.
+  void refuse_twice(std::initializer_list<std::string_view> columns) const;
 
   // Next row; false at the end. Throws where the row has another number of cells than the header.
   bool next();

@@ -224,6 +224,35 @@ TEST(HeaveCsv, KeepsEmptyCellsAsUnknownAndReadsTheMovingColumn) {
   EXPECT_EQ(s.moving, (std::vector<bool>{false, true, true}));
 }
 
+TEST(HeaveCsv, RefusesWhatCanBeNoHeaveNamingIt) {
+  const Scratch scratch;
+  const auto said = [&](const std::string& text) {
+    try {
+      read_heave_csv(scratch.write("h.csv", text));
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string("not refused");
+  };
+  // Of times so far apart no difference is a whole number any more.
+  EXPECT_NE(said("utime,heave_m\n0,1\n9223372036854775807,1\n").find("h.csv, line 3, column utime: '92233720"),
+            std::string::npos);
+  EXPECT_NE(said("utime,heave_m\n-9223372036854775808,1\n0,1\n").find("line 2, column utime: '-9223"),
+            std::string::npos);
+  EXPECT_EQ(said("utime,heave_m\n-1000000000000000000,1\n1000000000000000000,1\n"), "not refused");
+  // What stands for no value in other people's files.
+  for (const std::string value : {"9.96921e36", "-99999", "1e20"})
+    EXPECT_NE(said("utime,heave_m\n0,1\n1,2\n3," + value + "\n").find("line 4, column heave_m: '" + value + "'"),
+              std::string::npos)
+        << value;
+  EXPECT_EQ(said("utime,heave_m\n0,-9999\n"), "not refused");
+  for (const std::string column : {"heave_m", "heave_sigma_m", "moving"})
+    EXPECT_NE(said("utime,heave_m," + column + "," + column + "\n0,1,1,1\n")
+                  .find("h.csv, line 1: column '" + column + "' is there twice"),
+              std::string::npos);
+  EXPECT_EQ(said("utime,heave_m,note,note\n0,1,1,1\n"), "not refused");
+}
+
 TEST(HeaveCsv, RefusesAForeignHeaderAndDisorder) {
   const Scratch scratch;
   EXPECT_THROW(read_heave_csv(scratch.write("a.csv", "t,heave\n1,2\n")), UserError);
