@@ -16,6 +16,8 @@ namespace {
 
 using nlohmann::ordered_json;
 constexpr double kLargestBend_pmps2 = 0.05 / kStandardGravity;
+constexpr double kFarthestGravity_mps2 = 0.11;  // from the standard one, anywhere on Earth
+constexpr double kLargestOffset_mps2 = kStandardGravity, kLargestOffset_radps = 10;
 constexpr const char* kFormat = "waverig sensor calibration 1";
 
 template <class Matrix>
@@ -189,6 +191,8 @@ SensorCalibration calibration_from_json(const std::string& text, const std::stri
   const ordered_json document = ordered_json::parse(text, nullptr, false);
   if (document.is_discarded())
     throw UserError(fmt::format("{}: is no JSON: expected a calibration file", name));
+  if (const std::string twice = key_given_twice(text); !twice.empty())
+    throw UserError(fmt::format("{}: '{}' is there twice: expected it once", name, twice));
   const Reader in(document, name);
   if (in.text("/format") != kFormat) in.refuse("/format", in.at("/format"), fmt::format("\"{}\"", kFormat));
   SensorCalibration c;
@@ -196,20 +200,29 @@ SensorCalibration calibration_from_json(const std::string& text, const std::stri
   c.method = in.text("/method");
   c.utime = in.integer("/utime");
   c.gravity_mps2 = in.number("/gravity_mps2");
+  if (!(std::abs(c.gravity_mps2 - kStandardGravity) < kFarthestGravity_mps2))
+    in.refuse("/gravity_mps2", c.gravity_mps2, "gravity somewhere on Earth, m/s^2");
   if (!in.at("/temperature_degC").is_null()) c.temperature_degC = in.number("/temperature_degC");
   in.matrix("/accelerometer/M", c.accelerometer.M);
   c.accelerometer.b_mps2 = in.vector("/accelerometer/b_mps2");
+  if (!(c.accelerometer.b_mps2.cwiseAbs().maxCoeff() < kLargestOffset_mps2))
+    in.refuse("/accelerometer/b_mps2", in.at("/accelerometer/b_mps2"), "offsets below g, m/s^2");
   c.accelerometer.quadratic_pmps2 = in.vector("/accelerometer/quadratic_pmps2");
   in.matrix("/accelerometer/covariance", c.accelerometer.covariance);
   if (!(c.accelerometer.covariance.diagonal().minCoeff() >= 0))
     in.refuse("/accelerometer/covariance", c.accelerometer.covariance.diagonal().minCoeff(),
               "variances of 0 or more on the diagonal");
   c.gyroscope.offset_radps = in.vector("/gyroscope/offset_radps");
+  if (!(c.gyroscope.offset_radps.cwiseAbs().maxCoeff() < kLargestOffset_radps))
+    in.refuse("/gyroscope/offset_radps", in.at("/gyroscope/offset_radps"), "offsets below 10 rad/s");
   c.gyroscope.offset_sigma_radps = in.vector("/gyroscope/offset_sigma_radps");
   if (in.has("/compass")) c.compass = compass_of(in);
   c.residual_rms_mps2 = in.number("/residual_rms_mps2");
   c.chi_square = in.number("/chi_square");
-  c.degrees_of_freedom = static_cast<int>(in.integer("/degrees_of_freedom"));
+  const std::int64_t degrees = in.integer("/degrees_of_freedom");
+  c.degrees_of_freedom = static_cast<int>(degrees);
+  if (c.degrees_of_freedom != degrees || degrees < 0)
+    in.refuse("/degrees_of_freedom", degrees, "a whole number from 0");
   AccelerometerCorrection usable(c.accelerometer);  // throws where it is none
   return c;
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "estimator/calibration/readable_json.h"
 #include "lcmtypes/atomic_file.h"
 #include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
@@ -236,6 +237,8 @@ FrontEndCalibration front_end_calibration_from_json(const std::string& text, con
   } catch (const Json::exception&) {
     throw UserError(fmt::format("{}: a number that is too large: expected a front-end calibration", name));
   }
+  if (const std::string twice = key_given_twice(text); !twice.empty())
+    throw UserError(fmt::format("{}: '{}' is there twice: expected it once", name, twice));
   const Reader root(document, name);
   if (root.text("schema") != kSchema) root.at("schema", kText).refuse(fmt::format("\"{}\"", kSchema));
   FrontEndCalibration c;

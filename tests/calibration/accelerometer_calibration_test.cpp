@@ -133,6 +133,33 @@ TEST(CalibrationFile, RefusesAVarianceBelowZero) {
       << complaint(to_json(c));
 }
 
+TEST(CalibrationFile, RefusesWhatNoUnitIsLike) {
+  const auto said = [](auto change) {
+    SensorCalibration c = full_calibration();
+    change(c);
+    return complaint(to_json(c));
+  };
+  for (const double g_mps2 : {-3.0, 9.69, 9.92, 981.0})
+    EXPECT_NE(said([&](auto& c) { c.gravity_mps2 = g_mps2; }).find("unit.json: /gravity_mps2 = "), std::string::npos);
+  EXPECT_EQ(said([](auto& c) { c.gravity_mps2 = 9.764; }), "") << "Huascaran";
+  EXPECT_EQ(said([](auto& c) { c.gravity_mps2 = 9.834; }), "") << "the Arctic Ocean";
+  EXPECT_NE(said([](auto& c) { c.accelerometer.b_mps2.y() = -50; }).find("/accelerometer/b_mps2 = ["), std::string::npos);
+  EXPECT_NE(said([](auto& c) { c.gyroscope.offset_radps.z() = 1e300; }).find("/gyroscope/offset_radps = ["),
+            std::string::npos);
+  EXPECT_NE(said([](auto& c) { c.degrees_of_freedom = -1; }).find("/degrees_of_freedom = -1"), std::string::npos);
+  const std::string text = to_json(full_calibration());
+  const std::size_t at = text.find("\"degrees_of_freedom\": ") + 22;
+  EXPECT_NE(complaint(text.substr(0, at) + "1000000000000\n}\n").find("/degrees_of_freedom = 1000000000000"),
+            std::string::npos);
+}
+
+TEST(CalibrationFile, RefusesAKeyThatIsThereTwice) {
+  const std::string text = to_json(full_calibration());
+  EXPECT_NE(complaint(with(text, "\"method\"", "\"method\": \"x\", \"method\"")).find("unit.json: 'method' is there twice"),
+            std::string::npos);
+  EXPECT_NE(complaint(with(text, "\"M\"", "\"M\": [], \"M\"")).find("'M' is there twice"), std::string::npos);
+}
+
 TEST(CalibrationFile, NamesFileAndKeyOfWhatIsWrong) {
   const std::string text = to_json(full_calibration());
   EXPECT_EQ(complaint(text), "");

@@ -75,6 +75,17 @@ TEST(FrontEndFile, IsNoFolder) {
   }
 }
 
+TEST(FrontEndFile, HasNoKeyTwice) {
+  std::string text = file_text();
+  text.insert(text.find("\"K_N0_C\""), "\"K_N0_C\": 2e-9, ");
+  try {
+    front_end_calibration_from_json(text, "f.json");
+    ADD_FAILURE() << "taken";
+  } catch (const UserError& error) {
+    EXPECT_STREQ(error.what(), "f.json: 'K_N0_C' is there twice: expected it once");
+  }
+}
+
 TEST(FrontEndFile, OfAnythingElseIsRefusedInOneLine) {
   for (const char* text : {"", "3", "[]", "{}", "null", "\xff\xfe", "{\"schema\": 1e999}"}) {
     try {
