@@ -145,16 +145,21 @@ class SeaStates : public estimator::Output {
 struct Record {
   rig::SampleWatch watch;
   std::int64_t begin_utime = 0, end_utime = 0;
-  double force_sum_mps2 = 0;  // of those that have one
-  std::int64_t forces = 0;
+  struct Mean {
+    double sum = 0;
+    std::int64_t count = 0;
+    double value() const { return sum / static_cast<double>(count); }
+  } used_mps2, left_out_mps2;  // specific force, of those that have one
 
   void add(const ImuSample& sample) {
     if (watch.samples() == 0) begin_utime = sample.utime;
+    const std::int64_t left_out = watch.left_out();
     watch.add(sample);
     end_utime = sample.utime;
     if (!sample.f_B.allFinite()) return;
-    force_sum_mps2 += sample.f_B.norm();
-    ++forces;
+    Mean& mean = watch.left_out() > left_out ? left_out_mps2 : used_mps2;
+    mean.sum += sample.f_B.norm();
+    ++mean.count;
   }
 };
 
@@ -187,7 +192,8 @@ std::string summary_json(const evaluation::Summary& summary, const EstimateArgum
 }
 
 void check_units(const Record& record, const EstimateArguments& arguments) {
-  const double mean_force_mps2 = record.force_sum_mps2 / static_cast<double>(record.forces);
+  const Record::Mean& mean_mps2 = record.used_mps2.count > 0 ? record.used_mps2 : record.left_out_mps2;
+  const double mean_force_mps2 = mean_mps2.value();
   if (std::abs(mean_force_mps2 - arguments.gravity_mps2) > 0.4 * arguments.gravity_mps2)
     throw UserError(
         fmt::format("{}: the mean specific force is {:.3f}; expected about {:.2f} (m/s^2, gravity included)",

@@ -261,6 +261,22 @@ TEST(Program, SeesTheUnitsOfALogWithASampleThatIsNoNumber) {
       << refused.err;
 }
 
+// Nor does one that is left out as no reading, however large.
+TEST(Program, EstimatesARecordingWithOneSampleBeyondAllReason) {
+  const TemporaryDirectory temporary;
+  std::string record = wave_record();
+  const std::size_t row = record.find("\n50000000,0,");
+  ASSERT_NE(row, std::string::npos);
+  record.replace(row, 12, "\n50000000,1e308,");
+  temporary.write("wave.csv", record);
+  const Outcome outcome = run(temporary, "estimate wave.csv --out out");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err,
+            "waverig: wave.csv: 1 of 12000 samples left out: 1 not finite or beyond what is plausible; 1 gap in the "
+            "times, 0.01 s in all\n");
+  EXPECT_NEAR(number_in(outcome.out, "mean_height_m"), 1, 0.01);
+}
+
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
   const TemporaryDirectory temporary;
   temporary.write("wave.csv", wave_record());
