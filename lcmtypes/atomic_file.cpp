@@ -10,10 +10,23 @@
 #include "lcmtypes/disk.h"
 
 namespace waverig {
+namespace fs = std::filesystem;
 
-AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), temporary_(path_) {
-  temporary_ += fmt::format(".{}.partial", ::getpid());
-  file_.reset(std::fopen(temporary_.c_str(), "wb"));
+namespace {
+
+// A device, a pipe, /dev/stdout: no file could take its place, and what is written there stays.
+bool is_no_file(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  const bool special = fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+  return special || path.string().starts_with("/proc/");
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path path) : path_(led_to(std::move(path))), temporary_(path_) {
+  if (!is_no_file(path_)) temporary_ += fmt::format(".{}.partial", ::getpid());
+  file_.reset(std::fopen(temporary_.c_str(), temporary_ == path_ ? "ab" : "wb"));
   const std::error_code error(file_ ? 0 : errno, std::generic_category());
   if (error) refuse_place(error, fmt::format("{}: cannot be written: {}", path_.string(), error.message()));
 }
@@ -22,7 +35,7 @@ AtomicFile::~AtomicFile() {
   if (!file_) return;
   file_.reset();
   std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
+  if (temporary_ != path_) fs::remove(temporary_, ignored);
 }
 
 void AtomicFile::write(std::string_view text) {
@@ -30,7 +43,8 @@ void AtomicFile::write(std::string_view text) {
 }
 
 void AtomicFile::flush() {
-  if (error_ == 0 && (std::fflush(file_.get()) != 0 || ::fsync(::fileno(file_.get())) != 0)) error_ = errno;
+  if (error_ == 0 && std::fflush(file_.get()) != 0) error_ = errno;
+  if (error_ == 0 && temporary_ != path_ && ::fsync(::fileno(file_.get())) != 0) error_ = errno;
   if (error_ != 0)
     throw std::runtime_error(
         fmt::format("{}: not everything could be written: {}", path_.string(), std::strerror(error_)));
@@ -39,15 +53,15 @@ void AtomicFile::flush() {
 void AtomicFile::commit() {
   flush();
   try {
-    rename_whole(temporary_, path_);
-  } catch (const std::filesystem::filesystem_error& error) {
+    if (temporary_ != path_) rename_whole(temporary_, path_);
+  } catch (const fs::filesystem_error& error) {
     refuse_place(error.code(),
                  fmt::format("{}: cannot be written: {}", path_.string(), error.code().message()));
   }
   file_.reset();
 }
 
-void write_atomically(const std::filesystem::path& path, std::string_view text) {
+void write_atomically(const fs::path& path, std::string_view text) {
   AtomicFile file(path);
   file.write(text);
   file.commit();

@@ -55,6 +55,17 @@ std::string content_of(const fs::path& path, std::string_view expected) {
   return content;
 }
 
+fs::path led_to(fs::path path) {
+  constexpr int kMostLinks = 40;  // as Linux; what remains one leads in a circle
+  const auto without_slash = [](const fs::path& p) { return p.filename().empty() ? p.parent_path() : p; };
+  const auto in_proc = [](const fs::path& p) { return p.string().starts_with("/proc/"); };
+  path = without_slash(path);
+  std::error_code ignored;  // what may not be looked at is no link
+  for (int links = 0; links < kMostLinks && !in_proc(path) && fs::is_symlink(path, ignored); ++links)
+    path = without_slash(path.parent_path() / fs::read_symlink(path, ignored));
+  return path;
+}
+
 void rename_whole(const fs::path& from, const fs::path& to) {
   bring_to_disk(from);
   fs::rename(from, to);

@@ -18,6 +18,10 @@ bool is_of_the_machine(const std::error_code& why);
 // All that a file holds. Throws UserError, which names it and what was expected, where it cannot be read.
 std::string content_of(const std::filesystem::path& path, std::string_view expected);
 
+// Where a path leads: to what its links name, without a slash at its end. /proc's are left as they are: they
+// lead to what is open, not to a place.
+std::filesystem::path led_to(std::filesystem::path path);
+
 // Gives a finished file or folder its own name, so that it is whole under it after a loss of power too: what
 // it holds is on the disk before it has the name, and the name before this returns. The files of a folder are
 // to be on the disk already. Throws std::filesystem::filesystem_error.

@@ -19,13 +19,9 @@ constexpr const char* kResolved = "the resolved settings of a campaign";
 fs::path beside(fs::path directory, const char* suffix) { return directory += suffix; }
 
 // What can be renamed and have a neighbour: the directory that a link leads to, and no "DIR/" and no ".".
-fs::path place_of(fs::path directory) {
-  constexpr int kMostLinks = 40;  // as Linux; what remains one leads in a circle
-  const auto without_slash = [](const fs::path& p) { return p.filename().empty() ? p.parent_path() : p; };
-  directory = without_slash(directory);
-  for (int links = 0; links < kMostLinks && fs::is_symlink(directory); ++links)
-    directory = without_slash(directory.parent_path() / fs::read_symlink(directory));
-  return directory.filename() == "." || directory.filename() == ".." ? fs::canonical(directory) : directory;
+fs::path place_of(const fs::path& directory) {
+  fs::path place = led_to(directory);
+  return place.filename() == "." || place.filename() == ".." ? fs::canonical(place) : place;
 }
 
 // Of a campaign, or of waverig analyse compass.

@@ -10,6 +10,7 @@
 #include "rig/bench/results.h"
 #include "rig/bench/run_directory.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/recording.h"
 #include "rig/version.h"
 
 namespace waverig::cli {
@@ -36,6 +37,7 @@ std::optional<FrontEndCalibration> known_scale_factors(const FrontEndArguments& 
 }
 
 int calibrate_front_end(const FrontEndArguments& arguments) {
+  refuse_to_overwrite(store_file(arguments.run), arguments.out);
   const Store store = Store::open(store_file(arguments.run));
   const RunInfo info = store.info();
   if (!info.outcome.starts_with("done"))

@@ -10,6 +10,7 @@
 #include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/recording.h"
 
 namespace waverig::cli {
 namespace {
@@ -26,6 +27,7 @@ int compare(const CompareArguments& arguments) {
     throw UserError(
         fmt::format("{} and {}: no period, height and method in common; expected two campaigns of one kind",
                     arguments.baseline, arguments.candidate));
+  refuse_to_overwrite_results("--csv", arguments.csv, {arguments.baseline, arguments.candidate});
   if (!arguments.csv.empty()) write_atomically(arguments.csv, evaluation::comparison_csv(cells));
   fmt::print("{}", evaluation::comparison_table(cells));
   return evaluation::any_worse(cells) ? 1 : 0;

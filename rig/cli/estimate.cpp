@@ -204,6 +204,8 @@ void check_units(const Record& record, const EstimateArguments& arguments) {
 }
 
 int estimate(const EstimateArguments& arguments) {
+  refuse_to_overwrite({arguments.input, arguments.calibration}, arguments.out,
+                      {"heave.csv", "waves.csv", "summary.json", "record.nc"});
   SampleSource source =
       arguments.calibration.empty() ? samples_of(arguments.input) : uncalibrated_samples_of(arguments.input);
   estimator::MethodSettings settings;

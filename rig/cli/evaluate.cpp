@@ -58,6 +58,8 @@ evaluation::HeaveComparison against_truth(const EvaluateArguments& arguments,
 int evaluate_heave(const EvaluateArguments& arguments) {
   if (arguments.out.empty())
     throw UserError("--out is missing; expected a directory for waves.csv and summary.json");
+  refuse_to_overwrite({arguments.input, arguments.truth}, arguments.out,
+                      {"waves.csv", "summary.json", "record.nc"});
   const evaluation::HeaveSeries heave = evaluation::read_heave_csv(arguments.input);
   if (heave.utime.size() > 1)
     check_time_unit(arguments.input,

@@ -38,8 +38,10 @@ struct Partial {
 
 int film(const FilmArguments& arguments) {
   refuse_to_overwrite(arguments.log, arguments.out);
-  if (fs::is_directory(arguments.out))
-    throw UserError(fmt::format("--out {}: is a folder; expected an MP4 file", arguments.out));
+  const fs::path out = led_to(arguments.out);
+  if (fs::exists(out) && !fs::is_regular_file(out))
+    throw UserError(fmt::format("--out {}: is {}; expected an MP4 file", arguments.out,
+                                fs::is_directory(out) ? "a folder" : "no file that another could replace"));
   const evaluation::RunRecord run = evaluation::load_run(arguments.log);
   const render::RigMotion motion(run, arguments.method);
   render::FilmSettings settings = arguments.film;
@@ -47,13 +49,13 @@ int film(const FilmArguments& arguments) {
   settings.provenance.version = kVersion;
   settings.provenance.command = fmt::format("waverig film {}", arguments.log);
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  const Partial partial{fmt::format("{}.{}.partial", arguments.out, ::getpid())};
+  const Partial partial{fmt::format("{}.{}.partial", out.string(), ::getpid())};
   keep_signals();
   render::write_film(motion, settings, partial.path, [terminal](std::size_t done, std::size_t all) {
     end_if_told();
     if (terminal) fmt::print(stderr, "\r\033[K{} of {} frames", done, all);
   });
-  rename_whole(partial.path, arguments.out);
+  rename_whole(partial.path, out);
   if (terminal) fmt::print(stderr, "\r\033[K");
   fmt::print("{}\n", arguments.out);
   return 0;

@@ -17,8 +17,11 @@ namespace {
 
 enum ExitStatus { kDone = 0, kAnswerIsNo = 1, kBadInput = 2 };
 
-int fail(ExitStatus status, const char* message) {
-  std::fprintf(stderr, "waverig: %s\n", message);
+// One line, whatever a file, a key or a value is called.
+int fail(ExitStatus status, std::string message) {
+  for (char& c : message)
+    if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
+  std::fprintf(stderr, "waverig: %s\n", message.c_str());
   return status;
 }
 
@@ -26,7 +29,7 @@ int fail(ExitStatus status, const char* message) {
 int fail(const std::filesystem::filesystem_error& error) {
   const std::string sentence = error.path1().string() + ": " + error.code().message() +
                                "; expected a place that can be read and written";
-  return fail(waverig::is_of_the_machine(error.code()) ? kAnswerIsNo : kBadInput, sentence.c_str());
+  return fail(waverig::is_of_the_machine(error.code()) ? kAnswerIsNo : kBadInput, sentence);
 }
 
 // CLI11 tells of a missing command where the one given is unknown: commands of commands too.

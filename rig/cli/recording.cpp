@@ -13,6 +13,7 @@
 #include "lcmtypes/error.h"
 #include "lcmtypes/event_log.h"
 #include "lcmtypes/flags.h"
+#include "rig/campaign/settings.h"
 
 namespace waverig::cli {
 
@@ -87,6 +88,30 @@ void refuse_to_overwrite(const fs::path& recording, const fs::path& out) {
   std::error_code ignored;  // of an output that is not there
   if (fs::equivalent(recording, out, ignored))
     throw UserError(fmt::format("--out {}: is the recording itself; expected another file", out.string()));
+}
+
+void refuse_to_overwrite(const std::vector<std::string>& inputs, const fs::path& out,
+                         const std::vector<std::string>& results) {
+  std::error_code ignored;
+  for (const std::string& input : inputs)
+    for (const std::string& result : results)
+      if (!input.empty() && fs::equivalent(input, out / result, ignored))
+        throw UserError(fmt::format("--out {}: {} would take the place of {}; expected another directory",
+                                    out.string(), (out / result).string(), input));
+}
+
+void refuse_to_overwrite_results(const std::string& option, const fs::path& file,
+                                 const std::vector<fs::path>& directories) {
+  std::error_code ignored;
+  for (const fs::path& directory : directories) {
+    bool its = fs::exists(file) && fs::equivalent(file.parent_path(), directory / "runs", ignored);
+    for (const char* name :
+         {"results.json", "results.csv", "campaign.toml", "calibration.json", rig::kFrontEndFile})
+      its = its || fs::equivalent(file, directory / name, ignored);
+    if (its)
+      throw UserError(fmt::format("{} {}: is what the results in {} are made of; expected another file",
+                                  option, file.string(), directory.string()));
+  }
 }
 
 void make_out_directory(const std::string& out) {

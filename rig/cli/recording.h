@@ -27,6 +27,14 @@ void check_time_unit(const std::string& file, double usual_interval_s);
 // Throws UserError where --out names the recording itself.
 void refuse_to_overwrite(const std::filesystem::path& recording, const std::filesystem::path& out);
 
+// Throws UserError where one of the results that a command writes into --out would take an input's place.
+void refuse_to_overwrite(const std::vector<std::string>& inputs, const std::filesystem::path& out,
+                         const std::vector<std::string>& results);
+
+// Throws UserError where the option's file is one that the results of a campaign are made of.
+void refuse_to_overwrite_results(const std::string& option, const std::filesystem::path& file,
+                                 const std::vector<std::filesystem::path>& directories);
+
 // The folder that --out names, made where it is not there. Throws as refuse_place() of lcmtypes/disk.h.
 void make_out_directory(const std::string& out);
 

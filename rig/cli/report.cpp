@@ -9,6 +9,7 @@
 #include "lcmtypes/atomic_file.h"
 #include "render/report/report.h"
 #include "rig/cli/commands.h"
+#include "rig/cli/recording.h"
 
 namespace waverig::cli {
 namespace {
@@ -24,6 +25,7 @@ int report(const ReportArguments& arguments) {
   const bool compares = !arguments.baseline.empty();
   const fs::path out = !arguments.out.empty() ? fs::path(arguments.out)
                                               : directory / (compares ? "comparison.html" : "report.html");
+  refuse_to_overwrite_results("--out", out, {directory, arguments.baseline});
   write_atomically(out, compares ? render::comparison_html(evaluation::read_results(arguments.baseline),
                                                            arguments.baseline, results, directory)
                                  : render::report_html(results, directory));

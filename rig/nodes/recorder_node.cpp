@@ -19,7 +19,7 @@ std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix
 }  // namespace
 
 RecorderNode::RecorderNode(Bus& bus, const std::filesystem::path& path)
-    : path_(path), part_(with_suffix(path, ".part")), writer_(part_) {
+    : path_(led_to(path)), part_(with_suffix(path_, ".part")), writer_(part_) {
   for (const auto counted : {channel::kImu, channel::kTruth, channel::kAxis, channel::kRun, channel::kRecord})
     counted_.try_emplace(std::string(counted));
   bus.subscribe_raw(".*", [this](std::string_view channel, const void* data, std::size_t size) {

@@ -113,6 +113,24 @@ TEST(Program, JudgesNothingAnewWhereTheLogOfARunHasGone) {
 }
 
 // Heave of someone else's program, of the right motion but on another clock, short, or upside down.
+TEST(Program, WritesNoReportInThePlaceOfResults) {
+  const TemporaryDirectory temporary;
+  temporary.write("c.toml", kTiny);
+  ASSERT_EQ(run(temporary, "sweep c.toml --out done").status, 0);
+  for (const std::string file : {"results.json", "results.csv", "campaign.toml", "calibration.json",
+                                 "runs/T04.00s_H050.0cm_r1.lcm"}) {
+    const std::string before = bytes_of(temporary / "done" / file);
+    for (const std::string command : {"report done --out done/", "compare done done --csv ./done/"}) {
+      const Outcome refused = run(temporary, command + file);
+      EXPECT_EQ(refused.status, 2) << command << file;
+      EXPECT_NE(refused.err.find("is what the results in done are made of"), std::string::npos) << refused.err;
+    }
+    EXPECT_EQ(bytes_of(temporary / "done" / file), before) << file;
+  }
+  EXPECT_EQ(run(temporary, "compare done done --csv done/comparison.csv").status, 0);
+  EXPECT_EQ(run(temporary, "report done --out done/report.html").status, 0);
+}
+
 TEST(Program, RemarksOnHeaveThatDoesNotFitTheRun) {
   const TemporaryDirectory temporary;
   temporary.write("tiny.toml", kTiny);

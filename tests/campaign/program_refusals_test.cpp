@@ -20,6 +20,7 @@ class ProgramRefuses : public ::testing::TestWithParam<BadCall> {};
 TEST_P(ProgramRefuses, WithExitTwoAndOneLine) {
   const TemporaryDirectory temporary;
   temporary.write("unknown_key.toml", std::string("colour = 1\n") + kTiny);
+  temporary.write("two_lines.toml", std::string(kTiny) + "\"a\\nb\" = 1\n");
   temporary.write("wrong_type.toml", std::string(kTiny) + "rest_before_s = \"long\"\n");
   temporary.write("too_high.toml", "name = \"t\"\n[sweep]\nperiods_s = [6.0]\nheights_cm = [900.0]\n");
   temporary.write("no.toml", "name = \n");
@@ -40,6 +41,7 @@ TEST_P(ProgramRefuses, WithExitTwoAndOneLine) {
     late += std::to_string(100000 * row + 1000000000) + "," + std::to_string(row % 7) + "\n";
   }
   temporary.write("seas.csv", seas);
+  temporary.write("waves.csv", seas);
   temporary.write("late.csv", late);
   std::string milliseconds = "utime,ax,ay,az,gx,gy,gz\n", seconds = "utime,heave_m\n";
   for (int row = 0; row < 300; ++row) {
@@ -68,6 +70,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"NotToml", "sweep no.toml --out out", "no.toml:1"},
         BadCall{"UnknownKey", "sweep unknown_key.toml --out out",
                 "unknown_key.toml:1: colour = 1: unknown key"},
+        BadCall{"KeyOfTwoLines", "sweep two_lines.toml --out out",
+                "two_lines.toml:8: sweep.a?b = 1: unknown key"},
         BadCall{"WrongType", "sweep wrong_type.toml --out out",
                 "wrong_type.toml:8: sweep.rest_before_s = 'long'"},
         BadCall{"TooHigh", "sweep too_high.toml --out out", "too_high.toml:4: sweep.heights_cm = 900"},
@@ -108,10 +112,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"SeedOfAnAnalysis", "analyse compass --seed -1 --out out",
                 "--seed: -1: expected a whole number from 0"},
         BadCall{"OutIsAFile", "estimate level.csv --out level.csv", "--out level.csv: "},
+        BadCall{"OutHoldsTheRecording", "estimate heave.csv --out .",
+                "--out .: ./heave.csv would take the place of heave.csv"},
+        BadCall{"OutHoldsTheTruth", "evaluate seas.csv --truth waves.csv --out .",
+                "--out .: ./waves.csv would take the place of waves.csv"},
         BadCall{"OutIsTheRecording", "calibrate accelerometer level.csv --out ./level.csv",
                 "--out ./level.csv: is the recording itself"},
         BadCall{"OutIsTheLog", "film truncated.lcm --out truncated.lcm",
                 "--out truncated.lcm: is the recording itself"},
+        BadCall{"FilmIsADevice", "film truncated.lcm --out /dev/null",
+                "--out /dev/null: is no file that another could replace"},
         BadCall{"FilmIsAFolder", "film truncated.lcm --out .", "--out .: is a folder; expected an MP4 file"},
         BadCall{"NotSixPositions", "calibrate accelerometer level.csv --out out",
                 "level.csv: six-position calibration: x up held still for 0 s"},

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -234,6 +238,29 @@ TEST(AtomicFile, ShowsNothingBeforeTheCommitAndKeepsTheOldFileOnFailure) {
   write_atomically(path, "new");
   EXPECT_EQ(Scratch::read(path), "new");
   EXPECT_THROW(write_atomically(scratch.path() / "no" / "such" / "folder", "x"), UserError);
+}
+
+TEST(AtomicFile, OfALinkIsWhatItLeadsTo) {
+  const Scratch scratch;
+  const auto file = scratch.write("file", "before"), link = scratch.path() / "link";
+  std::filesystem::create_symlink("file", link);
+  write_atomically(link, "after");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(Scratch::read(file), "after");
+}
+
+// What is no file stays what it is: a pipe here, /dev/null where the program is root.
+TEST(AtomicFile, TakesNoPlaceOfAPipe) {
+  const Scratch scratch;
+  const auto pipe = scratch.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  write_atomically(pipe, "told");
+  std::array<char, 8> got{};
+  EXPECT_EQ(::read(reader, got.data(), got.size()), 4);
+  EXPECT_STREQ(got.data(), "told");
+  ::close(reader);
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 // As on a full disk: the system takes no more than so many bytes of a file.

@@ -32,6 +32,23 @@ TEST(Disk, AFullOrBrokenOneIsNoFaultOfThePlaceThatWasNamed) {
   }
 }
 
+TEST(Disk, ALinkLeadsToWhatItNames) {
+  const TemporaryDirectory temporary;
+  namespace fs = std::filesystem;
+  const fs::path folder = temporary / "folder", file = folder / "file";
+  fs::create_directory(folder);
+  fs::create_symlink("folder", temporary / "link");
+  fs::create_symlink("link", temporary / "to link");
+  fs::create_symlink("folder/file", temporary / "to nothing yet");
+  fs::create_symlink("circle", temporary / "circle");
+  EXPECT_EQ(led_to(folder), folder);
+  EXPECT_EQ(led_to(temporary / "folder/"), folder);
+  EXPECT_EQ(led_to(temporary / "to link"), folder);
+  EXPECT_EQ(led_to(temporary / "to nothing yet"), file);
+  EXPECT_EQ(led_to(temporary / "circle"), temporary / "circle");
+  EXPECT_EQ(led_to("/dev/stdout"), "/proc/self/fd/1") << "no place, whatever is open there";
+}
+
 // A loss of power cannot be tried here; what the disk is told, and when, can.
 TEST(Disk, WhatIsWholeIsOnItBeforeItHasItsNameAndTheNameAfter) {
   const TemporaryDirectory temporary;

@@ -36,6 +36,9 @@ int run_recorder(const RecorderArguments& arguments) {
   if (!arguments.replace && std::filesystem::exists(arguments.out))
     throw UserError(
         fmt::format("--out {}: is there already; expected a new file, or --replace", arguments.out));
+  if (std::filesystem::exists(arguments.out) && !std::filesystem::is_regular_file(arguments.out))
+    throw UserError(
+        fmt::format("--out {}: is no file that another could replace; expected a new file", arguments.out));
   Requests requests;
   Bus bus = open_bus(arguments.bus);
   rig::RecorderNode node(bus, arguments.out);
