@@ -14,6 +14,8 @@
 namespace waverig::rig::bench {
 namespace {
 
+constexpr double kLongestTimeout_s = 3600;  // of an instrument
+
 template <class Item>
 const Item* find_named(const std::vector<Item>& items, std::string_view name) {
   const auto found = std::ranges::find(items, name, &Item::name);
@@ -203,6 +205,8 @@ Laboratory load_laboratory(const std::filesystem::path& file) {
     instrument.identity = table.text("identity", "");
     instrument.error_query = table.text("error_query", "");
     instrument.timeout_s = quantity(table, "timeout", "s", "3 s");
+    if (!(instrument.timeout_s > 0 && instrument.timeout_s <= kLongestTimeout_s))
+      table.refuse("timeout", "a time above 0, of an hour at most");
     if (table.has("safe")) instrument.safe = table.texts("safe", {});
     for (TomlTable& setting : table.tables("setting")) instrument.settings.push_back(read_setting(setting));
     for (TomlTable& reading : table.tables("reading")) instrument.readings.push_back(read_reading(reading));

@@ -12,6 +12,7 @@ namespace waverig::rig::bench {
 namespace {
 
 constexpr std::size_t kStepsMax = 1'000'000;
+constexpr double kLongest_s = 366 * 86400.0;  // of a step
 constexpr int kDepthMax = 20;
 
 class Planner {
@@ -72,7 +73,11 @@ class Planner {
 
   static double quantity(const RawStep& step, const std::string& key, const std::string& base,
                          const Variables& variables, std::optional<std::string> fallback = {}) {
-    return parse_quantity(text(step, key, variables, std::move(fallback)), base, step.place + ": " + key).si;
+    const std::string given = text(step, key, variables, std::move(fallback));
+    const double si = parse_quantity(given, base, step.place + ": " + key).si;
+    if (base == "s" && !(si >= 0 && si <= kLongest_s))
+      refuse(step, key, given, "a time that is not negative, of a year at most");
+    return si;
   }
 
   void loop(const RawStep& step, Section section, const Variables& variables, const std::string& path,
@@ -244,8 +249,6 @@ class Planner {
     } else if (verbs[0] == "wait") {
       planned.verb = Verb::kWait;
       planned.duration_s = planned.expected_s = quantity(step, "wait", "s", variables);
-      if (planned.duration_s < 0)
-        refuse(step, "wait", text(step, "wait", variables), "a time that is not negative");
     } else if (verbs[0] == "until") {
       planned.verb = Verb::kUntil;
       plan_until(step, variables, planned);

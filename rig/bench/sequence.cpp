@@ -64,6 +64,7 @@ Sequence load_sequence(const std::filesystem::path& file) {
   if (root.has("duration"))
     sequence.duration_s =
         parse_quantity(root.text("duration", {}), "s", root.place_of("duration") + ": duration").si;
+  if (root.has("duration") && !(sequence.duration_s > 0)) root.refuse("duration", "a time above 0");
   sequence.laboratory = load_laboratory(file.parent_path() / root.text("laboratory", {}));
   if (root.has("unit")) load_unit(file.parent_path() / root.text("unit", {}), sequence.laboratory);
   sequence.fingerprints = sequence.laboratory.fingerprints;

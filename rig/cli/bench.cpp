@@ -2,6 +2,7 @@
 #include "rig/bench/bench.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -69,6 +70,22 @@ void keep_scale_factors(const Sequence& sequence, const BenchArguments& argument
   save(known, kept_scale_factors(arguments.out));
 }
 
+fs::path history_of(const BenchArguments& arguments) {
+  return arguments.history.empty()
+             ? fs::absolute(arguments.out).lexically_normal().parent_path() / "calibrations"
+             : fs::path(arguments.history);
+}
+
+// Refused now, not after a weekend.
+void check_history(const fs::path& history) {
+  fs::path there = fs::absolute(history);
+  std::error_code error;
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there, error) || ::access(there.c_str(), W_OK | X_OK) != 0)
+    throw UserError(
+        fmt::format("{}: cannot be made or written: expected a directory for the history", history.string()));
+}
+
 // What the run measured, written beside its store. Returns the exit status.
 int conclude(const Sequence& sequence, const BenchArguments& arguments, const BenchResult& result) {
   const fs::path out = arguments.out;
@@ -84,9 +101,7 @@ int conclude(const Sequence& sequence, const BenchArguments& arguments, const Be
     save(analysis->calibration, out / "calibration.json");
     write_atomically(out / "channels.csv", channels_csv(*analysis));
     fmt::print("{}", table_of(verdicts));
-    const fs::path history = arguments.history.empty()
-                                 ? fs::absolute(out).lexically_normal().parent_path() / "calibrations"
-                                 : fs::path(arguments.history);
+    const fs::path history = history_of(arguments);
     fmt::print("Kept:    {} in {}\n", History(history).keep(analysis->calibration), history.string());
   }
   write_atomically(out / "steps.csv", steps_csv(store));
@@ -109,6 +124,7 @@ int bench(const BenchArguments& arguments) {
     return 0;
   }
   BenchOptions options = options_for(arguments);
+  check_history(history_of(arguments));
   keep_scale_factors(sequence, arguments);
   StopOnSignal signals;
   BenchResult result;

@@ -186,6 +186,18 @@ TEST(BenchProgram, AFullDiskIsNoBadInput) {
   }
 }
 
+TEST(BenchProgram, RefusesAHistoryThatCannotBeBeforeItRuns) {
+  const Bench bench;
+  std::ofstream(bench.files.out("file")) << "no folder";
+  for (const char* name : {"file", "file/below"}) {
+    Program program = bench.start("out", {"--history", bench.files.out(name).string()});
+    EXPECT_EQ(program.wait(), 2) << program.said();
+    EXPECT_EQ(program.said(), "waverig: " + bench.files.out(name).string() +
+                                  ": cannot be made or written: expected a directory for the history\n");
+    EXPECT_FALSE(std::filesystem::exists(bench.files.out("out"))) << "nothing was begun";
+  }
+}
+
 struct Said {
   int status;
   std::string text;

@@ -387,6 +387,10 @@ TEST(Sequence, RefusesWhatCannotWorkWithOneSentence) {
       {{"poll = \"30 s\"", "pol = \"30 s\""}, "unknown key"},
       {{"value = \"on\"", "value = \"yes\""}, "expected one of off, on"},
       {{"title = \"Scale", "duration = \"3 h\"\ntitle = \"Scale"}, "expected the plan's own"},
+      {{"title = \"Scale", "duration = \"-38 h\"\ntitle = \"Scale"}, "expected a time above 0"},
+      {{"wait = \"5 s\"", "wait = \"1e30 s\""}, "wait = \"1e30 s\": expected a time that is not negative, of a year at most"},
+      {{"wait = \"5 s\"", "wait = \"-5 s\""}, "wait = \"-5 s\": expected a time that is not negative, of a year at most"},
+      {{"timeout = \"6 h\"", "timeout = \"-6 h\""}, "expected a time that is not negative, of a year at most"},
   };
   for (const auto& [change, expected] : wrong) {
     const ShortSequence files("scale_factor.toml", {change});
@@ -396,6 +400,21 @@ TEST(Sequence, RefusesWhatCannotWorkWithOneSentence) {
     } catch (const UserError& error) {
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find("scale_factor.toml:"), std::string::npos) << error.what();
+    }
+  }
+}
+
+// What waits without an end for an answer would never come to the tear-down.
+TEST(Sequence, AnInstrumentIsWaitedForAnHourAtMost) {
+  for (const std::string timeout : {"-3 s", "0 s", "1e9 s"}) {
+    const ShortSequence files("laboratory.toml", {{"[[instrument]]\n", "[[instrument]]\ntimeout = \"" + timeout + "\"\n"}});
+    try {
+      load_laboratory(files.file());
+      ADD_FAILURE() << "took " << timeout;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find("timeout = '" + timeout + "': expected a time above 0, of an hour at most"),
+                std::string::npos)
+          << error.what();
     }
   }
 }
