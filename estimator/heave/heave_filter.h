@@ -21,9 +21,6 @@
 
 namespace waverig::estimator {
 
-// Of the levelled vertical acceleration, up, and of the two leaks into it.
-using LevelIncrement = Increment<Eigen::Array3d>;
-
 struct HeaveStep {  // one node interval
   LevelIncrement increment;
   // Two-sided density of the acceleration's noise where that is known to be more than the model's, which is

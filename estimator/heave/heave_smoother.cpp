@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "estimator/heave/banded_cholesky.h"
 
@@ -12,44 +13,55 @@ namespace {
 
 constexpr double kBiasVariance_m2ps4 = 0.1;  // nothing known
 constexpr double kPathVariance_m2 = 1e4, kSpeedVariance_m2ps2 = 1e2;
+// Speed that the drift gains within some seconds, squared over its variance, which the sensor's noise does
+// not give it: of steady seas it is at most 14 in twenty minutes, of a crank set in motion 40 to 150. What
+// the drift does all the time is no surprise: of seas a quarter of all lies below kUsual.
+constexpr double kSurprising = 20, kGainsWithin_s = 8, kUsual = 0.2;
+constexpr double kBefore_s = 4;  // of what was found: it began earlier
+// What stands in the model's place there: besides its sea another one as high and slower than any wave, and
+// an offset that changes by 5 mg or so.
+constexpr double kSlowest_s = 50, kSlowRidge = 1e-5;
+constexpr double kOffsetWalk_m2ps5 = 1e-4;
+constexpr double kChanged = 5;  // standard deviations of the offset, before and after
 
 // Path and speed at the nodes from rest, less the parabola of least squares: keeps the unknown drift small.
-struct Path {
-  Eigen::VectorXd path_m, speed_mps;
+// Columns: up, and what a gyroscope's relative scale error about body x and y leaks into it.
+struct Paths {
+  Eigen::MatrixX3d path_m, speed_mps;
 };
 
-Path integrate(std::span<const PathIncrement> increments, double dt) {
+Paths integrate(std::span<const LevelIncrement> increments, double dt) {
   const auto n = static_cast<Eigen::Index>(increments.size()) + 1;
-  Path p{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  Paths p{Eigen::MatrixX3d::Zero(n, 3), Eigen::MatrixX3d::Zero(n, 3)};
   for (Eigen::Index k = 0; k + 1 < n; ++k) {
-    const PathIncrement& step = increments[static_cast<std::size_t>(k)];
-    p.path_m[k + 1] = p.path_m[k] + dt * p.speed_mps[k] + step.path_m;
-    p.speed_mps[k + 1] = p.speed_mps[k] + step.speed_mps;
+    const LevelIncrement& step = increments[static_cast<std::size_t>(k)];
+    p.path_m.row(k + 1) = p.path_m.row(k) + dt * p.speed_mps.row(k) + step.path_m.matrix().transpose();
+    p.speed_mps.row(k + 1) = p.speed_mps.row(k) + step.speed_mps.matrix().transpose();
   }
   // Legendre's polynomials on [-1, 1], orthogonal up to O(1/n): twice over is enough.
   const Eigen::VectorXd x =
       n > 1 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(n, -1, 1)) : Eigen::VectorXd::Zero(1);
+  const Eigen::VectorXd parabola = (1.5 * x.array().square() - 0.5).matrix();
   const double per_s = n > 1 ? 2 / (dt * static_cast<double>(n - 1)) : 0.0;
   for (int pass = 0; pass < 2; ++pass) {
-    const double c0 = p.path_m.mean();
-    p.path_m.array() -= c0;
+    const Eigen::RowVector3d c0 = p.path_m.colwise().mean();
+    p.path_m.rowwise() -= c0;
     if (n < 4) break;
-    const double c1 = p.path_m.dot(x) / x.squaredNorm();
-    p.path_m -= c1 * x;
-    p.speed_mps.array() -= c1 * per_s;
-    const Eigen::VectorXd parabola = (1.5 * x.array().square() - 0.5).matrix();
-    const double c2 = p.path_m.dot(parabola) / parabola.squaredNorm();
-    p.path_m -= c2 * parabola;
-    p.speed_mps -= 3 * c2 * per_s * x;
+    const Eigen::RowVector3d c1 = x.transpose() * p.path_m / x.squaredNorm();
+    p.path_m -= x * c1;
+    p.speed_mps.rowwise() -= c1 * per_s;
+    const Eigen::RowVector3d c2 = parabola.transpose() * p.path_m / parabola.squaredNorm();
+    p.path_m -= parabola * c2;
+    p.speed_mps -= 3 * per_s * x * c2;
   }
   return p;
 }
 
-// Adds weight * r r' to the matrix and weight * r * value to the right side, for a residual r . u - value.
-void add_row(BandedCholesky& A, Eigen::VectorXd& right, std::span<const Eigen::Index> index,
-             std::span<const double> r, double value, double weight) {
+// Adds weight * r r' to the matrix and weight * r * value to the right sides, for residuals r . u - value.
+void add_row(BandedCholesky& A, Eigen::MatrixX3d& right, std::span<const Eigen::Index> index,
+             std::span<const double> r, const Eigen::RowVector3d& value, double weight) {
   for (std::size_t i = 0; i < index.size(); ++i) {
-    right[index[i]] += weight * r[i] * value;
+    right.row(index[i]) += weight * r[i] * value;
     for (std::size_t j = 0; j < index.size(); ++j)
       if (index[j] <= index[i]) A.at(index[i], index[j]) += weight * r[i] * r[j];
   }
@@ -72,57 +84,203 @@ Eigen::Matrix<double, 3, 6> drift_step(double dt) {
   return G;
 }
 
-}  // namespace
+// Where the record is not what the model says.
+struct Exceptions {
+  std::vector<bool> sea, offset;  // a node each: of any sea; of an offset that changes
+  explicit Exceptions(Eigen::Index nodes)
+      : sea(static_cast<std::size_t>(nodes)), offset(static_cast<std::size_t>(nodes)) {}
+};
 
-std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments, const SeaModel& model,
-                                       std::span<const double> disturbance_m2ps3) {
-  const auto nodes = static_cast<Eigen::Index>(increments.size()) + 1;
-  const double dt = model.interval_s;
-  const Path path = integrate(increments, dt);
-  const Predictors<1> predictors = levinson(model.autocovariance_m2);
-  const Eigen::Index order = model.order();
-  BandedCholesky A(3 * nodes, std::max<Eigen::Index>(3 * std::min(order, nodes - 1), 5));
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * nodes);
+struct Solution {
+  Eigen::VectorXd heave_m, heave_rate_mps, heave_variance_m2;
+  Eigen::VectorXd drift, drift_variance;  // (d, d', b) a node
+};
+
+class DriftProblem {
+ public:
+  DriftProblem(std::span<const LevelIncrement> increments, const SeaModel& model, const SensorDrift& sensor,
+               std::span<const double> disturbance_m2ps3);
+  Solution solve(const Exceptions& exceptions) const;
+  // Marks the nodes about which the drift gains more speed than its noise gives it. False where there are
+  // none.
+  bool find_exceptions(const Solution& solution, Exceptions& exceptions) const;
+  // Of each stretch of them: has the offset changed over it, or was it a sea that the model does not know?
+  void tell_apart(const Solution& solution, Exceptions& exceptions) const;
+  Eigen::Index nodes() const { return paths_.path_m.rows(); }
+
+ private:
+  double disturbed_m2ps3(double noise_m2ps3, Eigen::Index k) const {
+    const double disturbance =
+        disturbance_m2ps3_.empty() ? 0.0 : disturbance_m2ps3_[static_cast<std::size_t>(k)];
+    return std::max(noise_m2ps3, disturbance);
+  }
+
+  const SeaModel& model_;
+  SensorDrift sensor_;
+  std::span<const double> disturbance_m2ps3_;
+  Paths paths_;
+  Predictors<1> predictors_;
+  Predictors<1> of_any_sea_;
+};
+
+// Of the model's sea over a slower one as high.
+Predictors<1> predictors_of_any_sea(const SeaModel& model) {
+  constexpr Eigen::Index kBins = 1025;
+  const double df = 0.5 / model.interval_s / static_cast<double>(kBins - 1);
+  const SeaModel slow =
+      model_of_density(pierson_moskowitz_m2s(model.heave_variance_m2(), kSlowest_s, kBins, df), df,
+                       model.interval_s, model.order(), kSlowRidge);
+  return levinson(Eigen::VectorXd(model.autocovariance_m2 + slow.autocovariance_m2));
+}
+
+DriftProblem::DriftProblem(std::span<const LevelIncrement> increments, const SeaModel& model,
+                           const SensorDrift& sensor, std::span<const double> disturbance_m2ps3)
+    : model_(model),
+      sensor_(sensor),
+      disturbance_m2ps3_(disturbance_m2ps3),
+      paths_(integrate(increments, model.interval_s)),
+      predictors_(levinson(model.autocovariance_m2)),
+      of_any_sea_(predictors_of_any_sea(model)) {}
+
+// The banded problem for each column of the paths; of these the leaks are taken as often as makes the whole
+// most probable.
+Solution DriftProblem::solve(const Exceptions& exceptions) const {
+  const Eigen::Index order = model_.order();
+  const double dt = model_.interval_s;
+  BandedCholesky A(3 * nodes(), std::max<Eigen::Index>(3 * std::min(order, nodes() - 1), 5));
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(3 * nodes(), 3);
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 
   // The sea's innovations: e(k) = (path - d)(k) - sum a_j (path - d)(k-j).
   std::vector<Eigen::Index> index;
   std::vector<double> row;
-  for (Eigen::Index k = 0; k < nodes; ++k) {
-    const Eigen::Index m = std::min(k, order);
-    const Eigen::RowVectorXd& a = predictors.coefficients[static_cast<std::size_t>(m)];
+  for (Eigen::Index k = 0; k < nodes(); ++k) {
+    const auto m = static_cast<std::size_t>(std::min(k, order));
+    const Predictors<1>& predictors = exceptions.sea[static_cast<std::size_t>(k)] ? of_any_sea_ : predictors_;
+    const Eigen::RowVectorXd& a = predictors.coefficients[m];
     index.assign(1, 3 * k);
     row.assign(1, 1.0);
-    double value = path.path_m[k];
-    for (Eigen::Index j = 1; j <= m; ++j) {
+    Eigen::RowVector3d value = paths_.path_m.row(k);
+    for (Eigen::Index j = 1; j <= a.size(); ++j) {
       index.push_back(3 * (k - j));
       row.push_back(-a[j - 1]);
-      value -= a[j - 1] * path.path_m[k - j];
+      value -= a[j - 1] * paths_.path_m.row(k - j);
     }
-    add_row(A, u, index, row, value, 1 / predictors.variance[static_cast<std::size_t>(m)].value());
+    const double weight = 1 / predictors.variance[m].value();
+    add_row(A, right, index, row, value, weight);
+    squares += weight * value.transpose() * value;
   }
   // The drift's steps.
   const Eigen::Matrix<double, 3, 6> G = drift_step(dt);
-  for (Eigen::Index k = 0; k + 1 < nodes; ++k) {
-    const double disturbance =
-        disturbance_m2ps3.empty() ? 0.0 : disturbance_m2ps3[static_cast<std::size_t>(k)];
+  for (Eigen::Index k = 0; k + 1 < nodes(); ++k) {
+    const double walk_m2ps5 =
+        exceptions.offset[static_cast<std::size_t>(k)] ? kOffsetWalk_m2ps5 : model_.bias_walk_m2ps5;
     const Eigen::Matrix<double, 6, 6> W =
-        G.transpose() *
-        drift_information(std::max(model.accel_noise_m2ps3, disturbance), model.bias_walk_m2ps5, dt) * G;
+        G.transpose() * drift_information(disturbed_m2ps3(model_.accel_noise_m2ps3, k), walk_m2ps5, dt) * G;
     for (Eigen::Index i = 0; i < 6; ++i)
       for (Eigen::Index j = 0; j <= i; ++j) A.at(3 * k + i, 3 * k + j) += W(i, j);
   }
-  for (Eigen::Index k = 0; k < nodes; ++k)
-    A.at(3 * k, 3 * k) += 1 / (kPathVariance_m2 * static_cast<double>(nodes));
+  for (Eigen::Index k = 0; k < nodes(); ++k)
+    A.at(3 * k, 3 * k) += 1 / (kPathVariance_m2 * static_cast<double>(nodes()));
   A.at(1, 1) += 1 / kSpeedVariance_m2ps2;
   A.at(2, 2) += 1 / kBiasVariance_m2ps4;
 
   if (!A.factorise()) throw std::logic_error("smooth_heave: the normal equations are not positive definite");
-  A.solve(u);
-  const Eigen::VectorXd variance = A.inverse_diagonal();
-  std::vector<SmoothedNode> answer(static_cast<std::size_t>(nodes));
-  for (Eigen::Index k = 0; k < nodes; ++k)
-    answer[static_cast<std::size_t>(k)] = {path.path_m[k] - u[3 * k], path.speed_mps[k] - u[3 * k + 1],
-                                           u[3 * k + 2], std::max(variance[3 * k], 0.0)};
+  Eigen::MatrixX3d drifts(right.rows(), 3);
+  for (Eigen::Index column = 0; column < 3; ++column) {
+    Eigen::VectorXd u = right.col(column);
+    A.solve(u);
+    drifts.col(column) = u;
+  }
+  const Eigen::Matrix3d least = squares - right.transpose() * drifts;
+  const double scale_variance = sensor_.gyro_scale_sigma * sensor_.gyro_scale_sigma;
+  const Eigen::Matrix2d scale_covariance =
+      scale_variance *
+      (Eigen::Matrix2d::Identity() + scale_variance * least.bottomRightCorner<2, 2>()).inverse();
+  const Eigen::Vector2d scale = scale_covariance * least.bottomLeftCorner<2, 1>();
+  const Eigen::Vector3d taken(1, -scale.x(), -scale.y());
+
+  const auto of_nodes = [](const auto& u, Eigen::Index state) {
+    return u(Eigen::seqN(state, u.rows() / 3, 3), Eigen::all);
+  };
+  const Eigen::MatrixX2d leaks = (paths_.path_m - of_nodes(drifts, 0)).rightCols<2>();
+  Solution solution;
+  solution.drift = drifts * taken;
+  solution.drift_variance = A.inverse_diagonal();
+  solution.heave_m = paths_.path_m * taken - of_nodes(solution.drift, 0);
+  solution.heave_rate_mps = paths_.speed_mps * taken - of_nodes(solution.drift, 1);
+  solution.heave_variance_m2 =
+      of_nodes(solution.drift_variance, 0) + (leaks * scale_covariance).cwiseProduct(leaks).rowwise().sum();
+  return solution;
+}
+
+bool DriftProblem::find_exceptions(const Solution& solution, Exceptions& exceptions) const {
+  const double dt = model_.interval_s;
+  const Eigen::Index steps = nodes() - 1;
+  const Eigen::Index within = std::lround(kGainsWithin_s / dt), before = std::lround(kBefore_s / dt);
+  if (steps < within) return false;
+  Eigen::ArrayXd ratio(steps - within + 1);  // of the steps from here on
+  double gained_mps = 0, variance = 0;
+  const auto pass = [&](Eigen::Index k, double sign) {
+    gained_mps +=
+        sign * (solution.drift[3 * k + 4] - solution.drift[3 * k + 1] - dt * solution.drift[3 * k + 2]);
+    variance += sign * dt * disturbed_m2ps3(sensor_.accel_noise_m2ps3, k);
+  };
+  for (Eigen::Index k = 0; k < within - 1; ++k) pass(k, 1);
+  for (Eigen::Index first = 0; first < ratio.size(); ++first) {
+    pass(first + within - 1, 1);
+    ratio[first] = gained_mps * gained_mps / variance;
+    pass(first, -1);
+  }
+  Eigen::ArrayXd sorted = ratio;
+  const auto quarter = sorted.begin() + sorted.size() / 4;
+  std::nth_element(sorted.begin(), quarter, sorted.end());
+  const double surprising = kSurprising * std::max(*quarter / kUsual, 1.0);
+  bool found = false;
+  for (Eigen::Index first = 0, known = 0; first < ratio.size(); ++first) {
+    if (ratio[first] < surprising) continue;
+    found = true;
+    // Until the autoregression remembers nothing of it.
+    const Eigen::Index end = std::min(nodes(), first + within + model_.order());
+    for (known = std::max(known, first - before); known < end; ++known) {
+      const auto node = static_cast<std::size_t>(std::max<Eigen::Index>(known, 0));
+      exceptions.sea[node] = exceptions.offset[node] = true;
+    }
+  }
+  return found;
+}
+
+void DriftProblem::tell_apart(const Solution& solution, Exceptions& exceptions) const {
+  for (Eigen::Index begin = 0; begin < nodes(); ++begin) {
+    if (!exceptions.sea[static_cast<std::size_t>(begin)]) continue;
+    Eigen::Index last = begin;
+    while (last + 1 < nodes() && exceptions.sea[static_cast<std::size_t>(last + 1)]) ++last;
+    const Eigen::Index from = 3 * begin + 2, to = 3 * std::min(last + 1, nodes() - 1) + 2;
+    const double change = solution.drift[to] - solution.drift[from];
+    const bool offset =
+        change * change > kChanged * kChanged * (solution.drift_variance[from] + solution.drift_variance[to]);
+    auto& not_it = offset ? exceptions.sea : exceptions.offset;
+    std::fill(not_it.begin() + begin, not_it.begin() + last + 1, false);
+    begin = last;
+  }
+}
+
+}  // namespace
+
+std::vector<SmoothedNode> smooth_heave(std::span<const LevelIncrement> increments, const SeaModel& model,
+                                       const SensorDrift& sensor, std::span<const double> disturbance_m2ps3) {
+  const DriftProblem problem(increments, model, sensor, disturbance_m2ps3);
+  Exceptions exceptions(problem.nodes());
+  Solution solution = problem.solve(exceptions);
+  if (problem.find_exceptions(solution, exceptions)) {
+    problem.tell_apart(problem.solve(exceptions), exceptions);
+    solution = problem.solve(exceptions);
+  }
+  std::vector<SmoothedNode> answer(static_cast<std::size_t>(problem.nodes()));
+  for (Eigen::Index k = 0; k < problem.nodes(); ++k)
+    answer[static_cast<std::size_t>(k)] = {solution.heave_m[k], solution.heave_rate_mps[k],
+                                           solution.drift[3 * k + 2],
+                                           std::max(solution.heave_variance_m2[k], 0.0)};
   return answer;
 }
 

@@ -2,12 +2,18 @@
 //
 // The model is the HeaveFilter's; over a record its most probable drift solves a banded least-squares problem
 // in (d, d', b) at every node,
-//     sum_k e(k)^2 / var e  +  sum_k |u(k+1) - F u(k)|^2 in Q^-1,       e(k) = z(k) - sum_j a_j z(k-j),  z =
-//     path - d
+//     sum_k e(k)^2 / var e  +  sum_k |u(k+1) - F u(k)|^2 in Q^-1,       e(k) = z(k) - sum_j a_j z(k-j),
+//     z = path - s . leaks - d
 // whose first `order` innovations are those of the shorter predictors, so that the sea is stationary from the
 // first node on: the record's ends are as much part of the model as its middle. Forward elimination and back
 // substitution of the banded normal equations are the two passes (they equal Rauch-Tung-Striebel's); linear
-// in time and memory.
+// in time and memory. What a gyroscope wrong by the scale errors s leaks into the vertical (disturbance.h) is
+// found with it, s being the same over the record.
+//
+// Where that drift gains speed that noise does not give it, something else happened than the model says: the
+// body was set in motion or brought to rest, and from one level to another, as no sea of that spectrum does;
+// or the sensor's offset changed. The offset before and after tells which. About it the record is gone
+// through again with any sea, one slower than any wave included, or with an offset that changes.
 #pragma once
 #include <Eigen/Core>
 #include <span>
@@ -25,9 +31,15 @@ struct SmoothedNode {
   double variance_m2 = 0;  // of heave
 };
 
+struct SensorDrift {             // what is known of it beforehand
+  double accel_noise_m2ps3 = 0;  // two-sided density, data sheet
+  double gyro_scale_sigma = 0;   // relative
+};
+
 // Nodes 0 … n for n increments; disturbance_m2ps3 is empty or one value an increment (as in
 // HeaveFilter::step).
-std::vector<SmoothedNode> smooth_heave(std::span<const PathIncrement> increments, const SeaModel& model,
+std::vector<SmoothedNode> smooth_heave(std::span<const LevelIncrement> increments, const SeaModel& model,
+                                       const SensorDrift& sensor,
                                        std::span<const double> disturbance_m2ps3 = {});
 
 }  // namespace waverig::estimator

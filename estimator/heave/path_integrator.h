@@ -7,6 +7,7 @@
 //     speed_mps = int a dt,      path_m = int int a dt dt         (over one interval, from rest)
 // Value: double, or an Eigen array of what goes the same way.
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 
 namespace waverig::estimator {
@@ -21,6 +22,8 @@ struct Increment {
   }
 };
 using PathIncrement = Increment<double>;
+// Of the levelled vertical acceleration, up, and of the two leaks into it (disturbance.h).
+using LevelIncrement = Increment<Eigen::Array3d>;
 
 template <class Value>
 class Integrator {

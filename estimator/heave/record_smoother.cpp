@@ -19,8 +19,9 @@ constexpr double kAbout = 2;  // standard deviations
 
 // One piece without a gap, seen from the nodes.
 struct Piece {
-  std::size_t begin = 0, end = 0;  // samples
-  std::vector<PathIncrement> increments;
+  std::size_t begin = 0, end = 0;         // samples
+  std::vector<PathIncrement> increments;  // up
+  std::vector<LevelIncrement> with_leaks;
   std::vector<double> disturbance_m2ps3;  // mean in each interval
   std::vector<PathIncrement> partial;     // one a sample, from the node before it
   std::vector<double> since_node_s;
@@ -41,13 +42,14 @@ void correct(const std::vector<OffsetChange>& changes, std::span<AttitudeSample>
 
 Piece integrate(const Record& record, const SmoothedRecord& smoothed, std::size_t begin, std::size_t end,
                 double interval_s, double gravity_mps2) {
-  Piece piece{begin, end, {}, {}, {}, {}, {}};
-  PathIntegrator integrator(interval_s);
+  Piece piece{begin, end, {}, {}, {}, {}, {}, {}};
+  Integrator<Eigen::Array3d> integrator(interval_s);
   MeanDisturbance disturbance;
   for (std::size_t i = begin; i < end; ++i) {
     const ImuSample& sample = record.samples()[i];
     const AttitudeSample& attitude = smoothed.attitude[i];
-    const double a_up = -attitude.a_N.z();
+    Eigen::Array3d a_up;
+    a_up << -attitude.a_N.z(), gyro_scale_leaks_mps2(attitude, smoothed.motion, sample.f_B);
     double density_m2ps3 = disturbance_m2ps3(attitude, sample.flags, gravity_mps2);
     for (const OffsetChange& change : smoothed.offset_changes)
       if (about(change, sample.utime)) density_m2ps3 += square(change.mps2) * change.sigma_s;
@@ -59,13 +61,14 @@ Piece integrate(const Record& record, const SmoothedRecord& smoothed, std::size_
     if (i == begin) {
       integrator.start(sample.utime, a_up);
     } else {
-      integrator.add(sample.utime, a_up, [&](std::int64_t, const PathIncrement& whole) {
-        piece.increments.push_back(whole);
+      integrator.add(sample.utime, a_up, [&](std::int64_t, const LevelIncrement& whole) {
+        piece.with_leaks.push_back(whole);
+        piece.increments.push_back({whole.speed_mps[0], whole.path_m[0]});
         piece.disturbance_m2ps3.push_back(disturbance.mean());
         disturbance = {};
       });
     }
-    piece.partial.push_back(integrator.partial());
+    piece.partial.push_back({integrator.partial().speed_mps[0], integrator.partial().path_m[0]});
     piece.since_node_s.push_back(integrator.since_node_s());
     piece.node.push_back(piece.increments.size());
   }
@@ -154,10 +157,11 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
   smoothed.sea = identify(pieces, sensor);
   const double interval_s = smoothed.sea.interval_s;
   if (interval_s != kFineInterval_s) pieces = pieces_with(interval_s);
+  const SensorDrift drift{accel_noise_m2ps3(sensor), sensor.gyro_scale_sigma};
   smoothed.heave.resize(samples.size());
   for (const Piece& piece : pieces)
-    interpolate(piece, smooth_heave(piece.increments, smoothed.sea, piece.disturbance_m2ps3), interval_s,
-                std::span(smoothed.heave).subspan(piece.begin, piece.end - piece.begin));
+    interpolate(piece, smooth_heave(piece.with_leaks, smoothed.sea, drift, piece.disturbance_m2ps3),
+                interval_s, std::span(smoothed.heave).subspan(piece.begin, piece.end - piece.begin));
   const double systematic = systematic_variance_m2(smoothed.sea, smoothed.motion, sensor);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     HeaveSample& h = smoothed.heave[i];
