@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace waverig::estimator {
 namespace {
 
 constexpr std::ptrdiff_t kApart = 4;  // steps from one moment to the next
 constexpr std::ptrdiff_t kMoments = 24;
+constexpr std::int64_t kReach = 3 * kApart;  // steps to the moments beside one
 constexpr std::int64_t kLong = 40;   // steps, after which speed and bias are known well enough to begin from
 constexpr double kDriftsAway = 4;    // standard deviations of the drift's speed
 constexpr double kFarthestRest = 2;  // standard deviations of the sea, from its mean level
@@ -41,10 +43,11 @@ void Calm::follow(const HeaveStep& step) {
 bool Calm::is_long() const { return !since_.empty() && since_.back().at >= kLong; }
 
 const Calm::Since* Calm::onset(const SeaModel& sea, double level_m, double log_likelihood,
-                               std::int64_t but_at) const {
+                               const Since* beside) const {
   const Since* onset = nullptr;
   for (const Since& since : since_) {
-    if (since.at < kLong || since.at == but_at) continue;
+    const std::int64_t away = beside ? std::abs(since.at - beside->at) : kApart;
+    if (since.at < kLong || away == 0 || away > kReach) continue;
     const HeaveFilter filter = risen(since, sea, level_m);
     if (filter.rest_s() > 0 || filter.log_likelihood() <= log_likelihood) continue;
     onset = &since;
@@ -55,6 +58,7 @@ const Calm::Since* Calm::onset(const SeaModel& sea, double level_m, double log_l
 
 bool Calm::drifts_away(const HeaveFilter& now) const {
   return std::any_of(since_.begin(), since_.end(), [&](const Since& since) {
+    if (since.at < kLong) return false;
     const double elapsed_s = static_cast<double>(std::ssize(since.steps)) * kFineInterval_s;
     return now.drifted_from(since.filter, elapsed_s) > kDriftsAway;
   });

@@ -32,9 +32,10 @@ class Calm {
   bool is_long() const;
   const Since* newest() const { return since_.empty() ? nullptr : &since_.back(); }
   // Of a long calm's moments that since when a sea makes the path most probable; none where no moment makes
-  // it more so than `log_likelihood`. but_at: not this one.
+  // it more so than `log_likelihood`. beside: of those within three
+  // seconds of this one alone.
   const Since* onset(const SeaModel& sea, double level_m, double log_likelihood,
-                     std::int64_t but_at = -1) const;
+                     const Since* beside = nullptr) const;
   // The filter's drift has become what noise does not make of it.
   bool drifts_away(const HeaveFilter& now) const;
 

@@ -379,7 +379,7 @@ AttitudeSample Realtime::rethink() {
 void Realtime::rethink_rise() {
   HeaveFilter risen = most_probable(&rise_->since, rise_->since.steps);
   if (const Calm::Since* onset = rise_->calm.onset(risen.model(), rest_level_m_,
-                                                   risen.log_likelihood() + kLikelier, rise_->since.at)) {
+                                                   risen.log_likelihood() + kLikelier, &rise_->since)) {
     rise_->since = *onset;
     risen = Calm::risen(*onset, risen.model(), rest_level_m_);
   }
