@@ -1,5 +1,5 @@
-// Files that are there whole or not at all: written beside their name, flushed to the disk, then renamed. Of a
-// link that which it leads to; a device or a pipe is written as it is.
+// Files that are there whole or not at all: written beside their name, flushed to the disk, then renamed. Of
+// a link that which it leads to; a device or a pipe is written as it is.
 #pragma once
 #include <cstdio>
 #include <filesystem>

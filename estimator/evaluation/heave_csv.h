@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "lcmtypes/atomic_file.h"
 #include "estimator/types.h"
+#include "lcmtypes/atomic_file.h"
 
 namespace waverig::evaluation {
 

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/results_io.h"
 #include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
@@ -15,9 +16,6 @@
 namespace waverig::evaluation {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr const char* kSettingsFile = "campaign.toml";
-constexpr const char* kCalibrationFile = "calibration.json";
 
 std::string settings_of(const fs::path& shard) {
   return content_of(shard / kSettingsFile, "the resolved settings of a shard");
@@ -84,7 +82,7 @@ CampaignResults merged(std::span<const fs::path> shards, std::span<const std::st
       throw UserError(fmt::format("{} and {}: calibration differs; expected shards of one campaign",
                                   shards.front().string(), shard.string()));
     for (RunResult& run : part.runs) {
-      if (const fs::path log = shard / "runs" / (run.run + ".lcm"); !fs::is_regular_file(log))
+      if (const fs::path log = log_of(shard, run.run); !fs::is_regular_file(log))
         throw UserError(fmt::format("{}: is {}; expected the log of a run that the results hold",
                                     log.string(), fs::exists(log) ? "no file" : "not there"));
       const auto [at, fresh] = holder.try_emplace({run.run, run.method}, &shard);
@@ -113,16 +111,16 @@ void merge_into(const fs::path& out, std::span<const fs::path> shards, const Cam
   std::error_code error;
   if (fs::exists(out) && !fs::is_empty(out, error))
     throw UserError(fmt::format("--out {}: is not empty; expected a new or empty directory", out.string()));
-  fs::create_directories(out / "runs", error);
+  fs::create_directories(runs_of(out), error);
   if (error)
     throw UserError(
         fmt::format("--out {}: {}; expected a directory that can be made", out.string(), error.message()));
   for (const char* file : {kSettingsFile, kCalibrationFile})
     if (fs::exists(shards.front() / file)) fs::copy_file(shards.front() / file, out / file);
   for (const fs::path& shard : shards) {
-    if (!fs::is_directory(shard / "runs")) continue;
-    for (const auto& log : fs::directory_iterator(shard / "runs"))
-      if (log.is_regular_file()) fs::copy_file(log.path(), out / "runs" / log.path().filename());
+    if (!fs::is_directory(runs_of(shard))) continue;
+    for (const auto& log : fs::directory_iterator(runs_of(shard)))
+      if (log.is_regular_file()) fs::copy_file(log.path(), runs_of(out) / log.path().filename());
   }
   write_results(out, results);
 }

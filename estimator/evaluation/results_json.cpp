@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "estimator/evaluation/results_fields.h"
+#include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/results_io.h"
 #include "lcmtypes/atomic_file.h"
 #include "lcmtypes/disk.h"
@@ -67,9 +68,9 @@ Json parsed(const std::filesystem::path& path) {
 // Both files of head and its cells. each_run calls its argument with the line of every run.
 template <class EachRun>
 void write_files(const std::filesystem::path& directory, const CampaignResults& head, EachRun each_run) {
-  AtomicFile table(directory / "results.csv");
+  AtomicFile table(directory / kResultsTable);
   table.write(results_csv(head.cells));
-  JsonFile file(directory / "results.json", head);
+  JsonFile file(directory / kResultsFile, head);
   file.begin_array("cells");
   for (const CellResult& cell : head.cells) file.element(line_of(cell));
   file.end_array();
@@ -160,7 +161,7 @@ void write_results(const std::filesystem::path& directory, const CampaignResults
 }
 
 void invalidate_results(const std::filesystem::path& directory) {
-  for (const char* file : {"results.json", "results.csv"}) {
+  for (const char* file : {kResultsFile, kResultsTable}) {
     std::error_code error;
     std::filesystem::remove(directory / file, error);
     if (error)
@@ -170,7 +171,7 @@ void invalidate_results(const std::filesystem::path& directory) {
 }
 
 CampaignResults read_results(const std::filesystem::path& directory) {
-  const std::filesystem::path path = directory / "results.json";
+  const std::filesystem::path path = directory / kResultsFile;
   const Json object = parsed(path);
   json::Reader reader(object, path.string());
   CampaignResults results;

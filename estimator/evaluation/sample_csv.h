@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "lcmtypes/atomic_file.h"
 #include "estimator/evaluation/csv_reader.h"
 #include "estimator/types.h"
+#include "lcmtypes/atomic_file.h"
 
 namespace waverig::evaluation {
 

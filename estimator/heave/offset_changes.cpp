@@ -51,14 +51,14 @@ Corner corner(const Eigen::VectorXd& speed, Eigen::Index at) {
 
 }  // namespace
 
-std::vector<OffsetChange> find_offset_changes(std::span<const PathIncrement> increments,
+std::vector<OffsetChange> find_offset_changes(std::span<const LevelIncrement> increments,
                                               std::int64_t first_utime, double dt) {
   const auto n = static_cast<Eigen::Index>(increments.size());
   const Eigen::Index window = std::lround(kWindow_s / dt);
   std::vector<OffsetChange> found;
   if (n < 2 * window) return found;
   Eigen::VectorXd a(n);
-  for (Eigen::Index k = 0; k < n; ++k) a[k] = increments[static_cast<std::size_t>(k)].speed_mps / dt;
+  for (Eigen::Index k = 0; k < n; ++k) a[k] = increments[static_cast<std::size_t>(k)].speed_mps[0] / dt;
   while (std::ssize(found) < kMost) {
     Eigen::VectorXd size = changes_of_mean(a, window).cwiseAbs();
     Eigen::Index peak = 0;

@@ -18,7 +18,7 @@ namespace waverig::estimator {
 
 // Of a piece without a gap that begins at first_utime; in order of time. Changes below 2.5 mg are left to the
 // drift, as are those within a minute of its ends.
-std::vector<OffsetChange> find_offset_changes(std::span<const PathIncrement> increments,
+std::vector<OffsetChange> find_offset_changes(std::span<const LevelIncrement> increments,
                                               std::int64_t first_utime, double interval_s);
 
 }  // namespace waverig::estimator

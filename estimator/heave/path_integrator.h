@@ -24,6 +24,9 @@ struct Increment {
 using PathIncrement = Increment<double>;
 // Of the levelled vertical acceleration, up, and of the two leaks into it (disturbance.h).
 using LevelIncrement = Increment<Eigen::Array3d>;
+inline PathIncrement up(const LevelIncrement& increment) {
+  return {increment.speed_mps[0], increment.path_m[0]};
+}
 
 template <class Value>
 class Integrator {

@@ -19,9 +19,8 @@ constexpr double kAbout = 2;  // standard deviations
 
 // One piece without a gap, seen from the nodes.
 struct Piece {
-  std::size_t begin = 0, end = 0;         // samples
-  std::vector<PathIncrement> increments;  // up
-  std::vector<LevelIncrement> with_leaks;
+  std::size_t begin = 0, end = 0;  // samples
+  std::vector<LevelIncrement> increments;
   std::vector<double> disturbance_m2ps3;  // mean in each interval
   std::vector<PathIncrement> partial;     // one a sample, from the node before it
   std::vector<double> since_node_s;
@@ -42,7 +41,7 @@ void correct(const std::vector<OffsetChange>& changes, std::span<AttitudeSample>
 
 Piece integrate(const Record& record, const SmoothedRecord& smoothed, std::size_t begin, std::size_t end,
                 double interval_s, double gravity_mps2) {
-  Piece piece{begin, end, {}, {}, {}, {}, {}, {}};
+  Piece piece{begin, end, {}, {}, {}, {}, {}};
   Integrator<Eigen::Array3d> integrator(interval_s);
   MeanDisturbance disturbance;
   for (std::size_t i = begin; i < end; ++i) {
@@ -62,13 +61,12 @@ Piece integrate(const Record& record, const SmoothedRecord& smoothed, std::size_
       integrator.start(sample.utime, a_up);
     } else {
       integrator.add(sample.utime, a_up, [&](std::int64_t, const LevelIncrement& whole) {
-        piece.with_leaks.push_back(whole);
-        piece.increments.push_back({whole.speed_mps[0], whole.path_m[0]});
+        piece.increments.push_back(whole);
         piece.disturbance_m2ps3.push_back(disturbance.mean());
         disturbance = {};
       });
     }
-    piece.partial.push_back({integrator.partial().speed_mps[0], integrator.partial().path_m[0]});
+    piece.partial.push_back(up(integrator.partial()));
     piece.since_node_s.push_back(integrator.since_node_s());
     piece.node.push_back(piece.increments.size());
   }
@@ -86,7 +84,7 @@ SeaModel identify(std::span<const Piece> pieces, const SensorKnowledge& sensor) 
   SeaIdentifier identifier(settings);
   for (const Piece& piece : pieces) {
     identifier.gap();
-    for (const PathIncrement& increment : piece.increments) identifier.add(increment);
+    for (const LevelIncrement& increment : piece.increments) identifier.add(up(increment));
   }
   return identifier.identify();
 }
@@ -102,7 +100,7 @@ void interpolate(const Piece& piece, std::span<const SmoothedNode> nodes, double
     double rate = nodes[k].heave_rate_mps + piece.partial[i].speed_mps;
     double variance = nodes[k].variance_m2;
     if (k + 1 < nodes.size()) {
-      const PathIncrement& whole = piece.increments[k];
+      const PathIncrement whole = up(piece.increments[k]);
       const double p = nodes[k + 1].heave_m - nodes[k].heave_m - dt * nodes[k].heave_rate_mps - whole.path_m;
       const double v = nodes[k + 1].heave_rate_mps - nodes[k].heave_rate_mps - whole.speed_mps;
       heave += x * x * ((3 - 2 * x) * p + (x - 1) * dt * v);
@@ -160,7 +158,7 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
   const SensorDrift drift{accel_noise_m2ps3(sensor), sensor.gyro_scale_sigma};
   smoothed.heave.resize(samples.size());
   for (const Piece& piece : pieces)
-    interpolate(piece, smooth_heave(piece.with_leaks, smoothed.sea, drift, piece.disturbance_m2ps3),
+    interpolate(piece, smooth_heave(piece.increments, smoothed.sea, drift, piece.disturbance_m2ps3),
                 interval_s, std::span(smoothed.heave).subspan(piece.begin, piece.end - piece.begin));
   const double systematic = systematic_variance_m2(smoothed.sea, smoothed.motion, sensor);
   for (std::size_t i = 0; i < samples.size(); ++i) {

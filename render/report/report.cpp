@@ -10,6 +10,7 @@
 #include <waverig/alarm_t.hpp>
 
 #include "estimator/evaluation/flag_names.h"
+#include "estimator/evaluation/results_files.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/event_log.h"
 #include "render/campaign_figures.h"
@@ -199,7 +200,7 @@ std::string excluded_section(const CampaignResults& results, const fs::path& dir
   HtmlTable alarms("Alarms and notes in the recordings", {"Run", "Time s", "Code", "Severity", "Text"});
   std::map<std::string, bool> seen;
   for (const RunResult& run : results.runs) {
-    const fs::path log = directory / "runs" / (run.run + ".lcm");
+    const fs::path log = evaluation::log_of(directory, run.run);
     if (!seen.emplace(run.run, true).second || !fs::exists(log)) continue;
     EventLogReader reader(log);
     LogEvent event;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "estimator/evaluation/results_files.h"
 #include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
 #include "render/figures/settings.h"
@@ -59,7 +60,7 @@ std::string sensor_part(const std::string& text) {
 }  // namespace
 
 std::string rig_section(const evaluation::CampaignResults& results, const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / "campaign.toml";
+  const std::filesystem::path file = directory / evaluation::kSettingsFile;
   const std::string settings =
       std::filesystem::exists(file) ? content_of(file, "the resolved settings of a campaign") : "";
   if (settings.empty() && results.calibration_json.empty()) return "";

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "estimator/evaluation/results_files.h"
 #include "lcmtypes/atomic_file.h"
 #include "lcmtypes/disk.h"
 #include "lcmtypes/error.h"
@@ -13,7 +14,7 @@ namespace waverig::rig {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char *kSettingsFile = "campaign.toml", *kCalibrationFile = "calibration.json";
+using evaluation::kCalibrationFile, evaluation::kSettingsFile;
 constexpr const char* kResolved = "the resolved settings of a campaign";
 
 fs::path beside(fs::path directory, const char* suffix) { return directory += suffix; }
@@ -26,7 +27,7 @@ fs::path place_of(const fs::path& directory) {
 
 // Of a campaign, or of waverig analyse compass.
 bool holds_results(const fs::path& directory) {
-  return fs::exists(directory / "results.json") || fs::exists(directory / "compass.csv");
+  return fs::exists(directory / evaluation::kResultsFile) || fs::exists(directory / "compass.csv");
 }
 
 // Under its own name once it is whole. Logs are large and nobody writes into one that is there: a second name
@@ -137,10 +138,11 @@ void refuse_other_campaign(const fs::path& from, const fs::path& to) {
 }
 
 void take_campaign(const fs::path& from, const fs::path& to) {
-  fs::create_directories(to / "runs");
+  fs::create_directories(evaluation::runs_of(to));
   for (const char* file : {kSettingsFile, kCalibrationFile, kFrontEndFile}) take_file(from / file, to / file);
-  for (const auto& log : fs::directory_iterator(from / "runs"))
-    if (log.path().extension() == ".lcm") take_file(log.path(), to / "runs" / log.path().filename());
+  for (const auto& log : fs::directory_iterator(evaluation::runs_of(from)))
+    if (log.path().extension() == ".lcm")
+      take_file(log.path(), evaluation::runs_of(to) / log.path().filename());
 }
 
 }  // namespace waverig::rig

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "estimator/evaluation/results_files.h"
 #include "rig/campaign/directory_lock.h"
 
 namespace waverig::rig {
@@ -25,7 +26,7 @@ class ResultsDirectory {
   ResultsDirectory& operator=(const ResultsDirectory&) = delete;
 
   const std::filesystem::path& working() const { return working_; }
-  std::filesystem::path runs() const { return working_ / "runs"; }
+  std::filesystem::path runs() const { return evaluation::runs_of(working_); }
   std::filesystem::path figures() const { return working_ / "figures"; }
 
   // The settings that the directory belongs to, as resolved text, under a line with the version that makes

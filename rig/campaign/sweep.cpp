@@ -101,7 +101,7 @@ evaluation::CampaignResults run_campaign(const Campaign& campaign, const Calibra
   {
     Progress progress("runs", runs.size());
     in_parallel(options.jobs, runs.size(), [&](std::size_t i) {
-      const auto log = directory.runs() / (runs[i].name + ".lcm");
+      const auto log = evaluation::log_of(directory.working(), runs[i].name);
       const auto judged =
           std::filesystem::exists(log)  // a log under its own name is whole: done before a resume
               ? evaluation::judge(evaluation::load_run(log), judge_settings(campaign.settings, unit, runs[i]))

@@ -29,8 +29,8 @@ class BenchTerminal {
   std::chrono::steady_clock::time_point drawn_;
 };
 
-// SIGINT, SIGTERM and SIGHUP set the flag instead of ending the program, so that the bench is left safe; a second one
-// ends it.
+// SIGINT, SIGTERM and SIGHUP set the flag instead of ending the program, so that the bench is left safe; a
+// second one ends it.
 class StopOnSignal {
  public:
   StopOnSignal();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "estimator/evaluation/results_files.h"
 #include "render/campaign_figures.h"
 #include "rig/campaign/reestimate.h"
 
@@ -27,7 +28,8 @@ std::vector<std::filesystem::path> draw_campaign(const evaluation::CampaignResul
   options.threads = jobs;
   options.provenance = {results.version, results.command, fmt::format("{}", results.seed)};
   options.uncalibrated = [&unit](const evaluation::RunRecord& run) { return uncalibrated_traces(run, unit); };
-  return render::draw_campaign_figures(results, directory / "runs", directory / "figures", options);
+  return render::draw_campaign_figures(results, evaluation::runs_of(directory), directory / "figures",
+                                       options);
 }
 
 }  // namespace waverig::cli

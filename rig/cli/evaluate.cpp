@@ -16,6 +16,7 @@
 #include "estimator/evaluation/heave_csv.h"
 #include "estimator/evaluation/heave_spectrum.h"
 #include "estimator/evaluation/netcdf_file.h"
+#include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/results_io.h"
 #include "estimator/evaluation/run_judge.h"
 #include "estimator/evaluation/run_record.h"
@@ -181,7 +182,7 @@ evaluation::JudgeSettings judge_settings(const evaluation::RunRecord& record,
 // Results are replaced by those of the logs: where a log has gone its run would go too.
 void refuse_to_lose_a_run(const fs::path& directory, const evaluation::CampaignResults& results) {
   for (const evaluation::RunResult& run : results.runs)
-    if (const fs::path log = directory / "runs" / (run.run + ".lcm"); !fs::exists(log))
+    if (const fs::path log = evaluation::log_of(directory, run.run); !fs::exists(log))
       throw UserError(
           fmt::format("{}: is not there; expected the log of a run that the results hold", log.string()));
 }
@@ -201,7 +202,7 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
   const bool elsewhere = !fs::equivalent(directory, out, error);
   if (elsewhere) rig::refuse_other_campaign(directory, out);
   std::vector<fs::path> logs;
-  for (const auto& entry : fs::directory_iterator(directory / "runs", error))
+  for (const auto& entry : fs::directory_iterator(evaluation::runs_of(directory), error))
     if (entry.path().extension() == ".lcm") logs.push_back(entry.path());
   if (logs.empty())
     throw UserError(fmt::format("{}: no runs/*.lcm; expected the logs of a campaign", arguments.input));

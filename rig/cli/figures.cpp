@@ -6,6 +6,7 @@
 #include <memory>
 #include <thread>
 
+#include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/results_io.h"
 #include "rig/campaign/sweep.h"
 #include "rig/cli/commands.h"
@@ -23,7 +24,7 @@ struct FigureArguments {
 int figures(const FigureArguments& arguments) {
   const std::filesystem::path directory = arguments.directory;
   const evaluation::CampaignResults results = evaluation::read_results(directory);
-  const rig::Campaign campaign = rig::read_campaign(directory / "campaign.toml");
+  const rig::Campaign campaign = rig::read_campaign(directory / evaluation::kSettingsFile);
   const rig::CalibratedUnit calibrated = rig::calibrate(campaign.settings);
   for (const auto& path : draw_campaign(results, directory, calibrated.unit, arguments.jobs, arguments.draw))
     fmt::print("{}\n", path.string());

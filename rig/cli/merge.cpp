@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/results_io.h"
 #include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
@@ -47,7 +48,7 @@ int merge(const MergeArguments& arguments) {
   const std::vector<std::filesystem::path> shards(arguments.shards.begin(), arguments.shards.end());
   const std::string command =
       fmt::format("waverig merge {} --out {}", fmt::join(arguments.shards, " "), arguments.out);
-  const rig::Campaign campaign = rig::read_campaign(shards.front() / "campaign.toml");
+  const rig::Campaign campaign = rig::read_campaign(shards.front() / evaluation::kSettingsFile);
   std::vector<std::string> expected_runs;
   for (const rig::RunPlan& run : rig::plan_campaign(campaign.settings).runs)
     expected_runs.push_back(run.name);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/sample_csv.h"
 #include "estimator/messages.h"
 #include "lcmtypes/channels.h"
@@ -104,9 +105,10 @@ void refuse_to_overwrite_results(const std::string& option, const fs::path& file
                                  const std::vector<fs::path>& directories) {
   std::error_code ignored;
   for (const fs::path& directory : directories) {
-    bool its = fs::exists(file) && fs::equivalent(file.parent_path(), directory / "runs", ignored);
-    for (const char* name :
-         {"results.json", "results.csv", "campaign.toml", "calibration.json", rig::kFrontEndFile})
+    bool its =
+        fs::exists(file) && fs::equivalent(file.parent_path(), evaluation::runs_of(directory), ignored);
+    for (const char* name : {evaluation::kResultsFile, evaluation::kResultsTable, evaluation::kSettingsFile,
+                             evaluation::kCalibrationFile, rig::kFrontEndFile})
       its = its || fs::equivalent(file, directory / name, ignored);
     if (its)
       throw UserError(fmt::format("{} {}: is what the results in {} are made of; expected another file",

@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "estimator/evaluation/results_files.h"
 #include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "render/report/report.h"
@@ -62,7 +63,7 @@ int sweep(const SweepArguments& arguments) {
     estimator::save(front_end->calibration, directory.working() / rig::kFrontEndFile);
   const rig::CalibratedUnit calibrated = rig::calibrate(campaign.settings);
   if (!calibrated.report_json.empty())
-    write_atomically(directory.working() / "calibration.json", calibrated.report_json);
+    write_atomically(directory.working() / evaluation::kCalibrationFile, calibrated.report_json);
 
   const rig::SweepOptions options{
       .jobs = arguments.jobs,

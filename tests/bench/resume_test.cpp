@@ -26,6 +26,15 @@ BenchOptions options_for(const std::filesystem::path& out) {
   return options;
 }
 
+void expect_refused(const Sequence& sequence, const BenchOptions& options, const std::string& why) {
+  try {
+    run_bench(sequence, options);
+    ADD_FAILURE() << "it went on";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+  }
+}
+
 // All that a run has measured, as text.
 std::string everything(const Store& store) {
   std::string text = store.info().outcome + "\n";
@@ -131,14 +140,7 @@ TEST(Resume, RefusesToGoOnWithAnUninterruptedSequenceThatWasTornDown) {
   const std::size_t before = Store::open(store_file(files.out())).steps().size();
   options.resume = true;
   options.progress = nullptr;
-  try {
-    run_bench(sequence, options);
-    ADD_FAILURE() << "it went on";
-  } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("torn down (stopped by the user), and its sequence cannot be interrupted"),
-              std::string::npos)
-        << error.what();
-  }
+  expect_refused(sequence, options, "torn down (stopped by the user), and its sequence cannot be interrupted");
   EXPECT_EQ(Store::open(store_file(files.out())).steps().size(), before);
 }
 
@@ -161,14 +163,7 @@ TEST(Resume, RefusesAnUninterruptedSequenceThatWasTornDownOnAFullDisk) {
   ASSERT_EQ(Store::open(store_file(files.out())).info().outcome, "running");
   options.resume = true;
   options.progress = nullptr;
-  try {
-    run_bench(sequence, options);
-    ADD_FAILURE() << "it went on";
-  } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("torn down (its store was not told why), and its sequence cannot be interrupted"),
-              std::string::npos)
-        << error.what();
-  }
+  expect_refused(sequence, options, "torn down (its store was not told why), and its sequence cannot be interrupted");
 }
 
 }  // namespace

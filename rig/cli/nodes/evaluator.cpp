@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/results_io.h"
 #include "lcmtypes/error.h"
 #include "rig/campaign/sweep.h"
@@ -28,7 +29,8 @@ rig::ResultsDirectory new_directory(const EvaluatorArguments& arguments) {
   fs::path unfinished = out.filename().empty() ? out.parent_path() : out;
   unfinished += ".partial";
   // What an evaluator leaves there is worth nothing: it judged no run. A sweep's runs are another matter.
-  if (!arguments.replace && fs::exists(unfinished / "runs") && !fs::is_empty(unfinished / "runs"))
+  const fs::path logs = evaluation::runs_of(unfinished);
+  if (!arguments.replace && fs::exists(logs) && !fs::is_empty(logs))
     throw UserError(
         fmt::format("--out {}: {} holds runs of an unfinished sweep; expected a new directory, or --replace",
                     arguments.out, unfinished.string()));

@@ -9,9 +9,9 @@ namespace waverig::cli {
 
 enum class Request { kNone, kStop, kHold, kResume };
 
-// Takes SIGINT, SIGTERM and SIGHUP (stop), SIGUSR1 (hold) and SIGUSR2 (resume) as requests that are asked for, so
-// that no call is interrupted and every way out is an ordinary one. To be made before any thread is; for the
-// rest of the process.
+// Takes SIGINT, SIGTERM and SIGHUP (stop), SIGUSR1 (hold) and SIGUSR2 (resume) as requests that are asked
+// for, so that no call is interrupted and every way out is an ordinary one. To be made before any thread is;
+// for the rest of the process.
 class Requests {
  public:
   Requests();
