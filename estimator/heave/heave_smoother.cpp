@@ -3,10 +3,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include "estimator/heave/banded_cholesky.h"
+#include "estimator/heave/rests.h"
 
 namespace waverig::estimator {
 namespace {
@@ -23,6 +25,9 @@ constexpr double kBefore_s = 4;  // of what was found: it began earlier
 constexpr double kSlowest_s = 50, kSlowRidge = 1e-5;
 constexpr double kOffsetWalk_m2ps5 = 1e-4;
 constexpr double kChanged = 5;  // standard deviations of the offset, before and after
+// At rest heave is what it was a node before, but for this part of the sea's heave rate.
+constexpr double kStillRate = 0.03, kStill_m = 1e-4;
+constexpr double kOffLevel = 3.5;  // standard deviations of a rest's level
 
 // Path and speed at the nodes from rest, less the parabola of least squares: keeps the unknown drift small.
 // Columns: up, and what a gyroscope's relative scale error about body x and y leaks into it.
@@ -86,9 +91,8 @@ Eigen::Matrix<double, 3, 6> drift_step(double dt) {
 
 // Where the record is not what the model says.
 struct Exceptions {
+  Rests rests;
   std::vector<bool> sea, offset;  // a node each: of any sea; of an offset that changes
-  explicit Exceptions(Eigen::Index nodes)
-      : sea(static_cast<std::size_t>(nodes)), offset(static_cast<std::size_t>(nodes)) {}
 };
 
 struct Solution {
@@ -100,7 +104,10 @@ class DriftProblem {
  public:
   DriftProblem(std::span<const LevelIncrement> increments, const SeaModel& model, const SensorDrift& sensor,
                std::span<const double> disturbance_m2ps3);
+  Exceptions find_rests() const;
   Solution solve(const Exceptions& exceptions) const;
+  // Of the rests, leaves those whose level is another than the sea's mean level.
+  void keep_off_level(const Solution& solution, Rests& rests) const;
   // Marks the nodes about which the drift gains more speed than its noise gives it. False where there are
   // none.
   bool find_exceptions(const Solution& solution, Exceptions& exceptions) const;
@@ -121,7 +128,17 @@ class DriftProblem {
   Paths paths_;
   Predictors<1> predictors_;
   Predictors<1> of_any_sea_;
+  Pace pace_;
 };
+
+Pace pace(const SeaModel& model) {
+  const double speed_mps =
+      std::sqrt(std::max(2 * (model.autocovariance_m2[0] - model.autocovariance_m2[1]), 0.0)) /
+      model.interval_s;
+  const double memory_s = static_cast<double>(model.order()) * model.interval_s;
+  return {speed_mps,
+          std::min(memory_s, 2 * std::numbers::pi * std::sqrt(model.heave_variance_m2()) / speed_mps)};
+}
 
 // Of the model's sea over a slower one as high.
 Predictors<1> predictors_of_any_sea(const SeaModel& model) {
@@ -140,7 +157,14 @@ DriftProblem::DriftProblem(std::span<const LevelIncrement> increments, const Sea
       disturbance_m2ps3_(disturbance_m2ps3),
       paths_(integrate(increments, model.interval_s)),
       predictors_(levinson(model.autocovariance_m2)),
-      of_any_sea_(predictors_of_any_sea(model)) {}
+      of_any_sea_(predictors_of_any_sea(model)),
+      pace_(pace(model)) {}
+
+Exceptions DriftProblem::find_rests() const {
+  const auto count = static_cast<std::size_t>(nodes());
+  return {estimator::find_rests(paths_.speed_mps.col(0), model_.interval_s, pace_, sensor_.accel_noise_m2ps3),
+          std::vector<bool>(count), std::vector<bool>(count)};
+}
 
 // The banded problem for each column of the paths; of these the leaks are taken as often as makes the whole
 // most probable.
@@ -151,13 +175,19 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
   Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(3 * nodes(), 3);
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 
-  // The sea's innovations: e(k) = (path - d)(k) - sum a_j (path - d)(k-j).
+  // The sea's innovations: e(k) = (path - d)(k) - sum a_j (path - d)(k-j). At rest, the path's own.
+  const Eigen::RowVectorXd as_before = Eigen::RowVectorXd::Ones(1);
+  const double still_m2 = std::pow(std::max(kStillRate * pace_.rate_mps * dt, kStill_m), 2);
   std::vector<Eigen::Index> index;
   std::vector<double> row;
-  for (Eigen::Index k = 0; k < nodes(); ++k) {
-    const auto m = static_cast<std::size_t>(std::min(k, order));
-    const Predictors<1>& predictors = exceptions.sea[static_cast<std::size_t>(k)] ? of_any_sea_ : predictors_;
-    const Eigen::RowVectorXd& a = predictors.coefficients[m];
+  for (Eigen::Index k = 0, begin = 0; k < nodes(); ++k) {
+    const auto node = static_cast<std::size_t>(k);
+    const bool still = exceptions.rests.still[node] && k > 0, between = exceptions.rests.between[node];
+    if (still || between) begin = k + 1;  // of the sea, which knows nothing of what was before
+    const auto m =
+        static_cast<std::size_t>(std::min(between ? k : std::max<Eigen::Index>(k - begin, 0), order));
+    const Predictors<1>& predictors = between || exceptions.sea[node] ? of_any_sea_ : predictors_;
+    const Eigen::RowVectorXd& a = still ? as_before : predictors.coefficients[m];
     index.assign(1, 3 * k);
     row.assign(1, 1.0);
     Eigen::RowVector3d value = paths_.path_m.row(k);
@@ -166,7 +196,7 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
       row.push_back(-a[j - 1]);
       value -= a[j - 1] * paths_.path_m.row(k - j);
     }
-    const double weight = 1 / predictors.variance[m].value();
+    const double weight = 1 / (still ? still_m2 : predictors.variance[m].value());
     add_row(A, right, index, row, value, weight);
     squares += weight * value.transpose() * value;
   }
@@ -212,6 +242,19 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
   solution.heave_variance_m2 =
       of_nodes(solution.drift_variance, 0) + (leaks * scale_covariance).cwiseProduct(leaks).rowwise().sum();
   return solution;
+}
+
+void DriftProblem::keep_off_level(const Solution& solution, Rests& rests) const {
+  for (Eigen::Index begin = 0; begin < nodes(); ++begin) {
+    Eigen::Index end = begin;
+    while (end < nodes() && rests.still[static_cast<std::size_t>(end)]) ++end;
+    if (end == begin) continue;
+    const double level = solution.heave_m.segment(begin, end - begin).mean();
+    const double variance = solution.heave_variance_m2.segment(begin, end - begin).mean();
+    if (level * level < kOffLevel * kOffLevel * variance)
+      std::fill(rests.still.begin() + begin, rests.still.begin() + end, false);
+    begin = end;
+  }
 }
 
 bool DriftProblem::find_exceptions(const Solution& solution, Exceptions& exceptions) const {
@@ -270,17 +313,23 @@ void DriftProblem::tell_apart(const Solution& solution, Exceptions& exceptions) 
 std::vector<SmoothedNode> smooth_heave(std::span<const LevelIncrement> increments, const SeaModel& model,
                                        const SensorDrift& sensor, std::span<const double> disturbance_m2ps3) {
   const DriftProblem problem(increments, model, sensor, disturbance_m2ps3);
-  Exceptions exceptions(problem.nodes());
+  Exceptions exceptions = problem.find_rests();
   Solution solution = problem.solve(exceptions);
+  Eigen::VectorXd unknown_level_m2 = Eigen::VectorXd::Zero(problem.nodes());
+  if (exceptions.rests.any()) {
+    unknown_level_m2 = solution.heave_variance_m2;
+    problem.keep_off_level(solution, exceptions.rests);
+    solution = problem.solve(exceptions);
+  }
   if (problem.find_exceptions(solution, exceptions)) {
     problem.tell_apart(problem.solve(exceptions), exceptions);
     solution = problem.solve(exceptions);
   }
   std::vector<SmoothedNode> answer(static_cast<std::size_t>(problem.nodes()));
   for (Eigen::Index k = 0; k < problem.nodes(); ++k)
-    answer[static_cast<std::size_t>(k)] = {solution.heave_m[k], solution.heave_rate_mps[k],
-                                           solution.drift[3 * k + 2],
-                                           std::max(solution.heave_variance_m2[k], 0.0)};
+    answer[static_cast<std::size_t>(k)] = {
+        solution.heave_m[k], solution.heave_rate_mps[k], solution.drift[3 * k + 2],
+        std::max({solution.heave_variance_m2[k], unknown_level_m2[k], 0.0})};
   return answer;
 }
 

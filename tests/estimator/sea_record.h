@@ -132,7 +132,7 @@ inline SeaRecord changing_record(const SeaCase& first, const SeaCase& c, double 
   });
 }
 
-// The same, with a rest between the runs: each lasts c.duration_s and begins and ends within a second, runs of the first
+// The same, with a rest between the runs: each lasts c.duration_s and begins and ends within ramp_s, runs of the first
 // sea and of the second taking turns. The rests are level_m below the mean level of the runs. Where each run begins is in
 // begins_s.
 struct RunsAndRests {
@@ -140,8 +140,8 @@ struct RunsAndRests {
   std::vector<double> begins_s;
 };
 inline RunsAndRests runs_and_rests(const SeaCase& first, SeaCase c, double rest_s, int runs, std::uint64_t seed,
-                                   double level_m = 0) {
-  constexpr double kRamp_s = 1, kFirst_s = 21;
+                                   double level_m = 0, double ramp_s = 1) {
+  constexpr double kFirst_s = 21;
   motion::FloatSettings level;
   level.slope_following = 0;
   motion::SeaMotion odd(motion::draw_components(sea_settings(first.tp_s, first.hm0_m, seed)), level),
@@ -156,8 +156,8 @@ inline RunsAndRests runs_and_rests(const SeaCase& first, SeaCase c, double rest_
   result.record = recorded(c, seed, [=, begins_s = result.begins_s](std::int64_t utime) mutable {
     const double t_s = static_cast<double>(utime) * kMicrosecond;
     const auto next = std::upper_bound(begins_s.begin() + 1, begins_s.end(), t_s);
-    const double stops_s = (next == begins_s.end() ? end_s : *next) - rest_s - kRamp_s;
-    const Ramp up = ramp(t_s, *(next - 1), kRamp_s), down = ramp(t_s, stops_s, kRamp_s);
+    const double stops_s = (next == begins_s.end() ? end_s : *next) - rest_s - ramp_s;
+    const Ramp up = ramp(t_s, *(next - 1), ramp_s), down = ramp(t_s, stops_s, ramp_s);
     const Ramp r{up.w - down.w, up.dw - down.dw, up.ddw - down.ddw};
     BodyMotion m = ((next - begins_s.begin()) % 2 == 1 ? odd : even).at(utime);
     m.position_N.z() -= level_m;

@@ -122,6 +122,44 @@ TEST(Smoothed, FollowsACrankThatBeginsAndEndsAtRest) {
   }
 }
 
+// Boards laid down between runs, or a rig that is parked, rest at the runs' mean level or at another.
+TEST(Smoothed, KnowsARestAtAnyLevel) {
+  struct Runs {
+    double tp_s, hm0_m, lasts_s, rest_s, level_m;
+    double rms, error_sigma;
+  };
+  for (const Runs& runs : {Runs{6, 1, 60, 20, 0, 0.012, 1}, {9, 2, 60, 60, 0.5, 0.06, 2.5}, {4, 1, 60, 60, 0.25, 0.05, 1.5},
+                           {3, 0.3, 120, 30, 0.15, 0.07, 1.5}}) {
+    double squares = 0, errors_sigma2 = 0, n = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const SeaCase sea{.tp_s = runs.tp_s, .hm0_m = runs.hm0_m, .duration_s = runs.lasts_s};
+      const SeaRecord record = runs_and_rests(sea, sea, runs.rest_s, 4, seed, runs.level_m).record;
+      const Collector out = run_smoothed(record.samples);
+      for (std::size_t i = 0; i < out.heaves.size(); ++i, ++n) {
+        const double error_m = out.heaves[i].heave_m + runs.level_m - record.heave_m[i];
+        squares += square(error_m);
+        errors_sigma2 += square(error_m / out.heaves[i].heave_sigma_m);
+      }
+    }
+    EXPECT_LT(std::sqrt(squares / n), runs.rms * runs.hm0_m) << runs.tp_s << " s, " << runs.level_m << " m";
+    EXPECT_LT(std::sqrt(errors_sigma2 / n), runs.error_sigma) << runs.tp_s << " s, " << runs.level_m << " m";
+  }
+}
+
+// Where a run begins over two periods, noise moves the path by as much as a rest may lie off the mean level.
+TEST(Smoothed, StatesThatARestsLevelIsNotKnown) {
+  const SeaCase sea{.tp_s = 8, .hm0_m = 1, .duration_s = 150};
+  const double level_m = sea.hm0_m / 8;
+  double errors_sigma2 = 0, n = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const SeaRecord record = runs_and_rests(sea, sea, 40, 3, seed, level_m, 2 * sea.tp_s).record;
+    const Collector out = run_smoothed(record.samples);
+    for (std::size_t i = 0; i < out.heaves.size(); ++i, ++n)
+      errors_sigma2 += square((out.heaves[i].heave_m + level_m - record.heave_m[i]) / out.heaves[i].heave_sigma_m);
+  }
+  EXPECT_LT(std::sqrt(errors_sigma2 / n), 2.5);
+}
+
 TEST(Smoothed, GivesTheHeaveRate) {
   const SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 1.5, .duration_s = 600}, 4);
   const Collector out = run_smoothed(record.samples);
