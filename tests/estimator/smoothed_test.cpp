@@ -116,8 +116,8 @@ TEST(Smoothed, FollowsACrankThatBeginsAndEndsAtRest) {
         errors_sigma2 += square(error_m / out.heaves[i].heave_sigma_m);
       }
     }
-    EXPECT_LT(std::sqrt(squares_m2 / n), 0.03 * 4 * kRadius_m / std::numbers::sqrt2) << period_s << " s";
-    EXPECT_LT(std::sqrt(errors_sigma2 / n), 2) << period_s << " s";
+    EXPECT_LT(std::sqrt(squares_m2 / n), 0.01 * 4 * kRadius_m / std::numbers::sqrt2) << period_s << " s";
+    EXPECT_LT(std::sqrt(errors_sigma2 / n), 1) << period_s << " s";
 
   }
 }
