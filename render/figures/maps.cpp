@@ -118,10 +118,11 @@ Figure std_map_figure(const CampaignResults& results) {
     }
     return kAuto;
   });
-  return maps_figure("Standard deviation of single waves",
-                     "over the waves of all repeats; logarithmic colours, one "
-                     "scale for all maps",
-                     std::move(panels), low, high, grid);
+  return maps_figure(
+      "Standard deviation of single waves",
+      "over the waves of all repeats; logarithmic colours, one scale for all maps; the limit is that of a "
+      "wave by itself, without what its neighbours tell",
+      std::move(panels), low, high, grid);
 }
 
 Figure sea_heave_map_figure(const CampaignResults& results) {

@@ -116,7 +116,7 @@ std::string results_table(const CampaignResults& results) {
       "Steady waves of all repeats; lengths in cm. U: expanded "
       "uncertainty of the mean, k = 2. Limit: "
       "Cram\u00E9r\u2013Rao bound of the standard "
-      "deviation. A number leads to the runs behind it.",
+      "deviation of a wave by itself. A number leads to the runs behind it.",
       {"Period s", "Height cm", "Method", "Waves", "Mean", "Error rate %", "U (k\u00A0=\u00A02)", "Std",
        "Limit", "Std / limit", "RMSE"});
   const SettingColumns set(results.cells);
