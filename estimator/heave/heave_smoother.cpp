@@ -27,7 +27,8 @@ constexpr double kOffsetWalk_m2ps5 = 1e-4;
 constexpr double kChanged = 5;  // standard deviations of the offset, before and after
 // At rest heave is what it was a node before, but for this part of the sea's heave rate.
 constexpr double kStillRate = 0.03, kStill_m = 1e-4;
-constexpr double kOffLevel = 3.5;  // standard deviations of a rest's level
+// Standard deviations of a rest's level, or of the mean of those that agree: chi square over their number.
+constexpr double kOffLevel = 3, kAgree = 3;
 
 // Path and speed at the nodes from rest, less the parabola of least squares: keeps the unknown drift small.
 // Columns: up, and what a gyroscope's relative scale error about body x and y leaks into it.
@@ -245,16 +246,30 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
 }
 
 void DriftProblem::keep_off_level(const Solution& solution, Rests& rests) const {
-  for (Eigen::Index begin = 0; begin < nodes(); ++begin) {
-    Eigen::Index end = begin;
+  struct Rest {
+    Eigen::Index begin, end;
+    double level_m, variance_m2;
+  };
+  std::vector<Rest> found;
+  double weights = 0, weighted = 0, squares = 0;
+  for (Eigen::Index begin = 0, end = 0; begin < nodes(); begin = end + 1) {
+    end = begin;
     while (end < nodes() && rests.still[static_cast<std::size_t>(end)]) ++end;
     if (end == begin) continue;
-    const double level = solution.heave_m.segment(begin, end - begin).mean();
-    const double variance = solution.heave_variance_m2.segment(begin, end - begin).mean();
-    if (level * level < kOffLevel * kOffLevel * variance)
-      std::fill(rests.still.begin() + begin, rests.still.begin() + end, false);
-    begin = end;
+    const double level_m = solution.heave_m.segment(begin, end - begin).mean();
+    const double variance_m2 = solution.heave_variance_m2.segment(begin, end - begin).mean();
+    found.push_back({begin, end, level_m, variance_m2});
+    weights += 1 / variance_m2;
+    weighted += level_m / variance_m2;
+    squares += level_m * level_m / variance_m2;
   }
+  if (found.empty()) return;
+  const double together = weighted * weighted / weights;  // chi square of their mean, and about it
+  const bool at_one_level = squares - together <= kAgree * static_cast<double>(found.size() - 1);
+  if (at_one_level && together > kOffLevel * kOffLevel) return;
+  for (const Rest& rest : found)
+    if (rest.level_m * rest.level_m <= kOffLevel * kOffLevel * rest.variance_m2)
+      std::fill(rests.still.begin() + rest.begin, rests.still.begin() + rest.end, false);
 }
 
 bool DriftProblem::find_exceptions(const Solution& solution, Exceptions& exceptions) const {

@@ -128,8 +128,9 @@ TEST(Smoothed, KnowsARestAtAnyLevel) {
     double tp_s, hm0_m, lasts_s, rest_s, level_m;
     double rms, error_sigma;
   };
-  for (const Runs& runs : {Runs{6, 1, 60, 20, 0, 0.012, 1}, {9, 2, 60, 60, 0.5, 0.06, 2.5}, {4, 1, 60, 60, 0.25, 0.05, 1.5},
-                           {3, 0.3, 120, 30, 0.15, 0.07, 1.5}}) {
+  for (const Runs& runs : {Runs{6, 1, 60, 20, 0, 0.012, 1}, {9, 2, 60, 60, 0.5, 0.05, 2}, {4, 1, 60, 60, 0.25, 0.04, 1},
+                           {6, 1, 60, 10, 0.25, 0.03, 1}, {12, 1, 300, 60, 0.25, 0.08, 2.5},
+                           {3, 0.3, 120, 30, 0.15, 0.06, 1}}) {
     double squares = 0, errors_sigma2 = 0, n = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const SeaCase sea{.tp_s = runs.tp_s, .hm0_m = runs.hm0_m, .duration_s = runs.lasts_s};
