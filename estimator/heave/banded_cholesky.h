@@ -16,6 +16,7 @@ class BandedCholesky {
   bool factorise();
   void solve(Eigen::VectorXd& x) const;      // x := A^-1 x
   Eigen::VectorXd inverse_diagonal() const;  // Takahashi, Fagan, Chen 1973
+  double log_determinant() const { return 2 * rows_.col(band_).array().log().sum(); }
 
  private:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -24,7 +24,9 @@ constexpr double kBefore_s = 4;  // of what was found: it began earlier
 // an offset that changes by 5 mg or so.
 constexpr double kSlowest_s = 50, kSlowRidge = 1e-5;
 constexpr double kOffsetWalk_m2ps5 = 1e-4;
-constexpr double kChanged = 5;  // standard deviations of the offset, before and after
+// By so much in log evidence, of the minutes about it, it was the offset that changed: of offsets that change
+// by 2 mg half a minute from the ends or further it is 100 to 230, of cranks that stop at most 57.
+constexpr double kChanged = 60, kAbout_s = 120;
 // At rest heave is what it was a node before, but for this part of the sea's heave rate.
 constexpr double kStillRate = 0.03, kStill_m = 1e-4;
 // Standard deviations of a rest's level, or of the mean of those that agree: chi square over their number.
@@ -94,11 +96,13 @@ Eigen::Matrix<double, 3, 6> drift_step(double dt) {
 struct Exceptions {
   Rests rests;
   std::vector<bool> sea, offset;  // a node each: of any sea; of an offset that changes
+  Exceptions of(Eigen::Index first, Eigen::Index last) const;  // those nodes alone
 };
 
 struct Solution {
   Eigen::VectorXd heave_m, heave_rate_mps, heave_variance_m2;
-  Eigen::VectorXd drift, drift_variance;  // (d, d', b) a node
+  Eigen::VectorXd drift;    // (d, d', b) a node
+  double log_evidence = 0;  // of the record, but for a constant
 };
 
 class DriftProblem {
@@ -113,7 +117,7 @@ class DriftProblem {
   // none.
   bool find_exceptions(const Solution& solution, Exceptions& exceptions) const;
   // Of each stretch of them: has the offset changed over it, or was it a sea that the model does not know?
-  void tell_apart(const Solution& solution, Exceptions& exceptions) const;
+  void tell_apart(Exceptions& exceptions) const;
   Eigen::Index nodes() const { return paths_.path_m.rows(); }
 
  private:
@@ -123,6 +127,7 @@ class DriftProblem {
     return std::max(noise_m2ps3, disturbance);
   }
 
+  std::span<const LevelIncrement> increments_;
   const SeaModel& model_;
   SensorDrift sensor_;
   std::span<const double> disturbance_m2ps3_;
@@ -153,7 +158,8 @@ Predictors<1> predictors_of_any_sea(const SeaModel& model) {
 
 DriftProblem::DriftProblem(std::span<const LevelIncrement> increments, const SeaModel& model,
                            const SensorDrift& sensor, std::span<const double> disturbance_m2ps3)
-    : model_(model),
+    : increments_(increments),
+      model_(model),
       sensor_(sensor),
       disturbance_m2ps3_(disturbance_m2ps3),
       paths_(integrate(increments, model.interval_s)),
@@ -179,6 +185,7 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
   // The sea's innovations: e(k) = (path - d)(k) - sum a_j (path - d)(k-j). At rest, the path's own.
   const Eigen::RowVectorXd as_before = Eigen::RowVectorXd::Ones(1);
   const double still_m2 = std::pow(std::max(kStillRate * pace_.rate_mps * dt, kStill_m), 2);
+  double log_variances = 0;
   std::vector<Eigen::Index> index;
   std::vector<double> row;
   for (Eigen::Index k = 0, begin = 0; k < nodes(); ++k) {
@@ -198,6 +205,7 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
       value -= a[j - 1] * paths_.path_m.row(k - j);
     }
     const double weight = 1 / (still ? still_m2 : predictors.variance[m].value());
+    log_variances -= std::log(weight);
     add_row(A, right, index, row, value, weight);
     squares += weight * value.transpose() * value;
   }
@@ -206,8 +214,10 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
   for (Eigen::Index k = 0; k + 1 < nodes(); ++k) {
     const double walk_m2ps5 =
         exceptions.offset[static_cast<std::size_t>(k)] ? kOffsetWalk_m2ps5 : model_.bias_walk_m2ps5;
-    const Eigen::Matrix<double, 6, 6> W =
-        G.transpose() * drift_information(disturbed_m2ps3(model_.accel_noise_m2ps3, k), walk_m2ps5, dt) * G;
+    const Eigen::Matrix3d information =
+        drift_information(disturbed_m2ps3(model_.accel_noise_m2ps3, k), walk_m2ps5, dt);
+    log_variances -= std::log(information.determinant());
+    const Eigen::Matrix<double, 6, 6> W = G.transpose() * information * G;
     for (Eigen::Index i = 0; i < 6; ++i)
       for (Eigen::Index j = 0; j <= i; ++j) A.at(3 * k + i, 3 * k + j) += W(i, j);
   }
@@ -225,9 +235,9 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
   }
   const Eigen::Matrix3d least = squares - right.transpose() * drifts;
   const double scale_variance = sensor_.gyro_scale_sigma * sensor_.gyro_scale_sigma;
-  const Eigen::Matrix2d scale_covariance =
-      scale_variance *
-      (Eigen::Matrix2d::Identity() + scale_variance * least.bottomRightCorner<2, 2>()).inverse();
+  const Eigen::Matrix2d scale_known =
+      Eigen::Matrix2d::Identity() + scale_variance * least.bottomRightCorner<2, 2>();
+  const Eigen::Matrix2d scale_covariance = scale_variance * scale_known.inverse();
   const Eigen::Vector2d scale = scale_covariance * least.bottomLeftCorner<2, 1>();
   const Eigen::Vector3d taken(1, -scale.x(), -scale.y());
 
@@ -237,11 +247,12 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
   const Eigen::MatrixX2d leaks = (paths_.path_m - of_nodes(drifts, 0)).rightCols<2>();
   Solution solution;
   solution.drift = drifts * taken;
-  solution.drift_variance = A.inverse_diagonal();
   solution.heave_m = paths_.path_m * taken - of_nodes(solution.drift, 0);
   solution.heave_rate_mps = paths_.speed_mps * taken - of_nodes(solution.drift, 1);
   solution.heave_variance_m2 =
-      of_nodes(solution.drift_variance, 0) + (leaks * scale_covariance).cwiseProduct(leaks).rowwise().sum();
+      of_nodes(A.inverse_diagonal(), 0) + (leaks * scale_covariance).cwiseProduct(leaks).rowwise().sum();
+  solution.log_evidence = -0.5 * (least(0, 0) - scale.dot(least.bottomLeftCorner<2, 1>()) + log_variances +
+                                  A.log_determinant() + std::log(scale_known.determinant()));
   return solution;
 }
 
@@ -308,17 +319,34 @@ bool DriftProblem::find_exceptions(const Solution& solution, Exceptions& excepti
   return found;
 }
 
-void DriftProblem::tell_apart(const Solution& solution, Exceptions& exceptions) const {
+Exceptions Exceptions::of(Eigen::Index first, Eigen::Index last) const {
+  const auto part = [&](const std::vector<bool>& all) {
+    return std::vector<bool>(all.begin() + first, all.begin() + last + 1);
+  };
+  return {{part(rests.still), part(rests.between)}, part(sea), part(offset)};
+}
+
+void DriftProblem::tell_apart(Exceptions& exceptions) const {
+  const Eigen::Index about = std::lround(kAbout_s / model_.interval_s);
+  const auto none = [](std::vector<bool>& marks, Eigen::Index first, Eigen::Index last) {
+    std::fill(marks.begin() + first, marks.begin() + last + 1, false);
+  };
   for (Eigen::Index begin = 0; begin < nodes(); ++begin) {
     if (!exceptions.sea[static_cast<std::size_t>(begin)]) continue;
     Eigen::Index last = begin;
     while (last + 1 < nodes() && exceptions.sea[static_cast<std::size_t>(last + 1)]) ++last;
-    const Eigen::Index from = 3 * begin + 2, to = 3 * std::min(last + 1, nodes() - 1) + 2;
-    const double change = solution.drift[to] - solution.drift[from];
-    const bool offset =
-        change * change > kChanged * kChanged * (solution.drift_variance[from] + solution.drift_variance[to]);
-    auto& not_it = offset ? exceptions.sea : exceptions.offset;
-    std::fill(not_it.begin() + begin, not_it.begin() + last + 1, false);
+    const Eigen::Index from = std::max<Eigen::Index>(begin - about, 0),
+                       to = std::min(last + about, nodes() - 1);
+    const auto part = [&](const auto& all) {
+      return all.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from));
+    };
+    const DriftProblem problem(part(increments_), model_, sensor_,
+                               disturbance_m2ps3_.empty() ? disturbance_m2ps3_ : part(disturbance_m2ps3_));
+    Exceptions sea = exceptions.of(from, to), offset = sea;
+    none(sea.offset, begin - from, last - from);
+    none(offset.sea, begin - from, last - from);
+    const bool changed = problem.solve(offset).log_evidence > problem.solve(sea).log_evidence + kChanged;
+    none(changed ? exceptions.sea : exceptions.offset, begin, last);
     begin = last;
   }
 }
@@ -337,7 +365,7 @@ std::vector<SmoothedNode> smooth_heave(std::span<const LevelIncrement> increment
     solution = problem.solve(exceptions);
   }
   if (problem.find_exceptions(solution, exceptions)) {
-    problem.tell_apart(problem.solve(exceptions), exceptions);
+    problem.tell_apart(exceptions);
     solution = problem.solve(exceptions);
   }
   std::vector<SmoothedNode> answer(static_cast<std::size_t>(problem.nodes()));

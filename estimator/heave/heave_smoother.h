@@ -17,8 +17,8 @@
 //
 // Where that drift gains speed that noise does not give it, something else happened than the model says: the
 // body was set in motion or brought to rest, and from one level to another, as no sea of that spectrum does;
-// or the sensor's offset changed. The offset before and after tells which. About it the record is gone
-// through again with any sea or with an offset that changes.
+// or the sensor's offset changed. Which one makes the minutes about it more probable is believed, and the
+// record is gone through again with any sea there or with an offset that changes.
 #pragma once
 #include <Eigen/Core>
 #include <span>

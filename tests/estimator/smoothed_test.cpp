@@ -71,12 +71,13 @@ TEST(Smoothed, TakesNoChangeOfItsOffsetForASea) {
 
 // One that is too small to be found by itself bends the drift as a sea might that was not there before.
 TEST(Smoothed, TakesNoSmallChangeOfItsOffsetForASea) {
-  for (const Limit& limit : {Limit{8, 1.5, 0.004}, {12, 1, 0.01}}) {
-    SeaRecord record = sea_record({.tp_s = limit.tp_s, .hm0_m = limit.hm0_m, .duration_s = 600}, 1);
-    for (std::size_t i = 30000; i < record.samples.size(); ++i) record.samples[i].f_B.z() -= 0.02;
-    const Collector out = run_smoothed(record.samples);
-    EXPECT_LT(rms_over_hm0(out.heaves, record, 0, out.heaves.size()), limit.rms) << "Tp " << limit.tp_s << " s";
-  }
+  for (const Limit& limit : {Limit{3, 0.5, 0.003}, {8, 1.5, 0.007}, {12, 1, 0.012}})
+    for (const int at_s : {30, 300, 570}) {
+      SeaRecord record = sea_record({.tp_s = limit.tp_s, .hm0_m = limit.hm0_m, .duration_s = 600}, 1);
+      for (auto i = static_cast<std::size_t>(at_s) * 100; i < record.samples.size(); ++i) record.samples[i].f_B.z() -= 0.02;
+      const Collector out = run_smoothed(record.samples);
+      EXPECT_LT(rms_over_hm0(out.heaves, record, 0, out.heaves.size()), limit.rms) << "Tp " << limit.tp_s << " s, at " << at_s << " s";
+    }
 }
 
 // In a steep sea it leaks into the vertical with the groups of waves.
@@ -89,26 +90,35 @@ TEST(Smoothed, FindsTheGyroscopesScale) {
 }
 
 // As a rig does that turns its crank from rest: its first stroke goes to one side, and is the sea's by no spectrum.
-TEST(Smoothed, FollowsACrankThatBeginsAndEndsAtRest) {
-  constexpr double kRest_s = 20, kLasts_s = 240, kRadius_m = 0.4;
+struct Crank {
+  double period_s, lasts_s = 240, rest_s = 20, radius_m = 0.4;
+  double ramp_s() const { return 2 * period_s; }
+  double stops_s() const { return lasts_s - rest_s; }
+};
+SeaRecord turned(const Crank& crank, std::uint64_t seed) {
+  const double omega = 2 * kPi / crank.period_s, begins_to_stop_s = crank.stops_s() - crank.ramp_s();
+  double turned_rad = 0, last_s = 0;
+  return recorded({.duration_s = crank.lasts_s}, seed, [&](std::int64_t utime) {
+    const double t_s = static_cast<double>(utime) * kMicrosecond;
+    const Ramp up = ramp(t_s, crank.rest_s, crank.ramp_s()), down = ramp(t_s, begins_to_stop_s, crank.ramp_s());
+    const double speed = omega * (up.w - down.w), speeds_up = omega * (up.dw - down.dw);
+    turned_rad += (t_s - std::exchange(last_s, t_s)) * speed;
+    const Vector3d radius(crank.radius_m * std::cos(turned_rad), 0, -crank.radius_m * std::sin(turned_rad));
+    const Vector3d along(radius.z(), 0, -radius.x());
+    BodyMotion m;
+    m.position_N = radius;
+    m.velocity_N = speed * along;
+    m.acceleration_N = speeds_up * along - speed * speed * radius;
+    return m;
+  });
+}
+
+TEST(Smoothed, FollowsACrankThatBeginsAtRest) {
   for (const double period_s : {4.0, 6.0, 9.0}) {
-    const double omega = 2 * kPi / period_s, ramp_s = 2 * period_s, stops_s = kLasts_s - kRest_s - ramp_s;
+    const Crank crank{period_s};
     double squares_m2 = 0, errors_sigma2 = 0, n = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      double turned_rad = 0, last_s = 0;
-      const SeaRecord record = recorded({.duration_s = kLasts_s}, seed, [&](std::int64_t utime) {
-        const double t_s = static_cast<double>(utime) * kMicrosecond;
-        const Ramp up = ramp(t_s, kRest_s, ramp_s), down = ramp(t_s, stops_s, ramp_s);
-        const double speed = omega * (up.w - down.w), speeds_up = omega * (up.dw - down.dw);
-        turned_rad += (t_s - std::exchange(last_s, t_s)) * speed;
-        const Vector3d radius(kRadius_m * std::cos(turned_rad), 0, -kRadius_m * std::sin(turned_rad));
-        const Vector3d along(radius.z(), 0, -radius.x());
-        BodyMotion m;
-        m.position_N = radius;
-        m.velocity_N = speed * along;
-        m.acceleration_N = speeds_up * along - speed * speed * radius;
-        return m;
-      });
+      const SeaRecord record = turned(crank, seed);
       const Collector out = run_smoothed(record.samples);
       for (std::size_t i = 0; i < 6000; ++i, ++n) {
         const double error_m = out.heaves[i].heave_m - record.heave_m[i];
@@ -116,9 +126,24 @@ TEST(Smoothed, FollowsACrankThatBeginsAndEndsAtRest) {
         errors_sigma2 += square(error_m / out.heaves[i].heave_sigma_m);
       }
     }
-    EXPECT_LT(std::sqrt(squares_m2 / n), 0.01 * 4 * kRadius_m / std::numbers::sqrt2) << period_s << " s";
+    EXPECT_LT(std::sqrt(squares_m2 / n), 0.01 * 4 * crank.radius_m / std::numbers::sqrt2) << period_s << " s";
     EXPECT_LT(std::sqrt(errors_sigma2 / n), 1) << period_s << " s";
+  }
+}
 
+// Of a record that ends as the crank stops no rest tells where it stands.
+TEST(Smoothed, TakesACrankThatStopsForNoChangeOfItsOffset) {
+  for (const double period_s : {4.0, 6.0, 9.0}) {
+    const Crank crank{period_s};
+    double errors_sigma2 = 0, n = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      SeaRecord record = turned(crank, seed);
+      record.samples.resize(static_cast<std::size_t>(100 * crank.stops_s()));
+      const Collector out = run_smoothed(record.samples);
+      for (std::size_t i = out.heaves.size() - 2000; i < out.heaves.size(); ++i, ++n)
+        errors_sigma2 += square((out.heaves[i].heave_m - record.heave_m[i]) / out.heaves[i].heave_sigma_m);
+    }
+    EXPECT_LT(std::sqrt(errors_sigma2 / n), 3) << period_s << " s";
   }
 }
 
