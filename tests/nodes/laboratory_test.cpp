@@ -150,7 +150,7 @@ TEST_F(Laboratory, WholeRunFromDriveToResultsAndSomeoneElsesProgramIsJudgedToo) 
   EXPECT_FALSE(std::filesystem::exists(temporary_ / "line")) << "the rig takes its name of the line with it";
 
   const evaluation::CampaignResults results = evaluation::read_results(temporary_ / "results");
-  ASSERT_EQ(results.cells.size(), 3u);
+  ASSERT_EQ(results.cells.size(), 3u) << outsider.err();
   EXPECT_NEAR(mean_height_m(results, "outsider"), 1.1 * 0.5, 0.01) << "its gain is known";
   EXPECT_NEAR(mean_height_m(results, "harmonic"), 0.5, 0.05) << "uncalibrated";
   EXPECT_NE(evaluator->out().find("outsider"), std::string::npos);
