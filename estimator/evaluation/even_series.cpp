@@ -38,6 +38,7 @@ std::vector<std::vector<double>> even_pieces(std::span<const std::int64_t> utime
   std::vector<std::vector<double>> pieces;
   if (utime.size() < 2) return pieces;
   const std::int64_t step = median_interval(utime), longest = longest_step(utime);
+  if (step <= 0) return pieces;
   std::size_t first = 0, last = utime.size();  // known values of the piece that is being gathered
   const auto close = [&] {
     if (last == utime.size()) return;

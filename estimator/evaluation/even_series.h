@@ -33,7 +33,8 @@ std::int64_t median_interval(std::span<const std::int64_t> utime);
 std::int64_t longest_step(std::span<const std::int64_t> utime);
 
 // The pieces of a series between its gaps, each on an even grid of the median interval from its first known
-// value on. Single values that are unknown or missing are no gap: straight lines stand for them.
+// value on; none where that interval is not positive, times that do not grow being no series. Single values
+// that are unknown or missing are no gap: straight lines stand for them.
 std::vector<std::vector<double>> even_pieces(std::span<const std::int64_t> utime,
                                              std::span<const double> value);
 

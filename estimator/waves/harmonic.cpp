@@ -77,7 +77,7 @@ void Harmonic::add(const ImuSample& sample, Output& output) {
     heave.seq = sample.seq;
     heave.heave_m = heave.heave_rate_mps = heave.heave_sigma_m = kUnknown;
     heave.flags = verdict.flags | flag::kSettling;
-    output.heave(heave);
+    order_.give(heave, verdict.usable, output);
     return;
   }
   if (!under_way_) {
@@ -161,7 +161,7 @@ void Harmonic::give_heave(const std::vector<RegularWave>& waves, double until_s,
     heave.heave_sigma_m = fitted.sigma_m;
     heave.q_NB = sample.q_NB;
     heave.flags = sample.flags | fitted.flags | (fitted.inside ? 0 : flag::kSettling);
-    output.heave(heave);
+    order_.give(heave, sample.usable, output);
   }
   levelled_.erase(levelled_.begin(), levelled_.begin() + static_cast<std::ptrdiff_t>(given));
   gathered_ -= given;

@@ -20,6 +20,7 @@
 #include "estimator/method.h"
 #include "estimator/sample_guard.h"
 #include "estimator/waves/block_leveller.h"
+#include "estimator/waves/heave_order.h"
 #include "estimator/waves/regular_waves.h"
 #include "estimator/waves/wave_series.h"
 
@@ -48,6 +49,7 @@ class Harmonic final : public Method {
   MethodSettings settings_;
   HarmonicSettings own_;
   SampleGuard guard_;
+  HeaveOrder order_;
   BlockLeveller leveller_;
   WaveSeries series_;
   std::deque<LevelledSample> levelled_;  // waiting for their heave

@@ -48,7 +48,7 @@ void Lee2014::add(const ImuSample& sample, Output& output) {
   heave.heave_rate_mps = v_mps_;
   heave.q_NB = attitude_.q_NB();
   heave.flags = verdict.flags;
-  output.heave(heave);
+  order_.give(heave, verdict.usable, output);
 }
 
 void Lee2014::finish(Output&) {}  // the last wave, not closed by a crest, is left out

@@ -21,6 +21,7 @@
 #include "estimator/attitude/lee_attitude.h"
 #include "estimator/method.h"
 #include "estimator/sample_guard.h"
+#include "estimator/waves/heave_order.h"
 
 namespace waverig::estimator {
 
@@ -52,6 +53,7 @@ class Lee2014 final : public Method {
   Lee2014Settings settings_;
   double offset_sigma_mps2_ = 0, scale_sigma_ = 0;  // of the levelled vertical acceleration
   SampleGuard guard_;
+  HeaveOrder order_;
   LeeAttitude attitude_;
 
   // Eq. (10): state and the covariances that the gain needs. Those of v and p alone grow without bound

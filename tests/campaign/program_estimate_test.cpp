@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 #include <waverig/imu_t.hpp>
@@ -275,6 +276,29 @@ TEST(Program, EstimatesARecordingWithOneSampleBeyondAllReason) {
             "waverig: wave.csv: 1 of 12000 samples left out: 1 not finite or beyond what is plausible; 1 gap in the "
             "times, 0.01 s in all\n");
   EXPECT_NEAR(number_in(outcome.out, "mean_height_m"), 1, 0.01);
+}
+
+// Every sample three times, as a gateway that repeats itself: the series of heave grows in time all the same.
+TEST(Program, TellsHeaveInOrderOfTimeWhereSamplesComeAgain) {
+  const TemporaryDirectory temporary;
+  EventLogWriter writer(temporary / "thrice.lcm");
+  imu_t m{};
+  std::vector<std::uint8_t> data(static_cast<std::size_t>(m.getEncodedSize()));
+  for (m.seq = 0; m.seq < 12000; ++m.seq) {
+    m.utime = 10000 * m.seq;
+    m.accel_mps2[2] = -9.80665 + 1.2337 * std::cos(2 * std::numbers::pi * static_cast<double>(m.seq) / 400);
+    m.encode(data.data(), 0, m.getEncodedSize());
+    for (int times = 0; times < 3; ++times) writer.write(m.utime, channel::kImu, data.data(), data.size());
+  }
+  writer.close();
+  for (const std::string method : {"harmonic", "lee2014"}) {
+    const Outcome outcome = run(temporary, "--version >/dev/null; ulimit -t 60 -v 4000000; " WAVERIG_PROGRAM
+                                           " estimate thrice.lcm --netcdf --out out --method " + method);
+    ASSERT_EQ(outcome.status, 0) << method << outcome.err;
+    EXPECT_NEAR(number_in(outcome.out, "mean_height_m"), 1, 0.02) << method;
+    const Outcome again = run(temporary, "evaluate out/heave.csv --out again");
+    EXPECT_EQ(again.status, 0) << method << again.err;
+  }
 }
 
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {

@@ -48,6 +48,13 @@ TEST(HeaveSpectrum, HoldsTheVarianceOfASineAtItsFrequency) {
   EXPECT_NEAR(spectrum.resolution_hz, 0.005, 1e-9);
 }
 
+// A median interval of nothing is no step of a grid: it would never end.
+TEST(HeaveSpectrum, OfTimesThatDoNotGrowIsEmpty) {
+  HeaveSeries s = series({{0.5, 0.1, 0}}, 60, 4);
+  for (std::size_t i = 0; i < s.utime.size(); ++i) s.utime[i] = s.utime[i - i % 4];
+  EXPECT_TRUE(spectrum_of(s.utime, s.heave_m).frequency_hz.empty());
+}
+
 // 249 s in blocks of 100: what happens in its last 45 s lies in one of them.
 TEST(HeaveSpectrum, SeesARecordToItsEnd) {
   HeaveSeries s = series({{0.5, 0.1, 0}}, 249, 4);
