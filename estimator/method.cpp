@@ -1,5 +1,6 @@
 #include "estimator/method.h"
 
+#include <algorithm>
 #include <array>
 
 #include "estimator/compass/directional_method.h"
@@ -21,16 +22,17 @@ std::unique_ptr<Method> make(const MethodSettings& settings) {
 struct Entry {
   std::string_view name;
   std::unique_ptr<Method> (*make)(const MethodSettings&);
+  bool tells_waves;
 };
 
 // Every method, once.
 constexpr std::array kMethods{
-    Entry{"lee2014", make<Lee2014>},
-    Entry{"harmonic", make<Harmonic>},
-    Entry{"realtime", make<Realtime>},
-    Entry{"smoothed", make<Smoothed>},
-    Entry{"spectral", make<Spectral>},
-    Entry{"directional", make<Directional>},
+    Entry{.name = "lee2014", .make = make<Lee2014>, .tells_waves = true},
+    Entry{.name = "harmonic", .make = make<Harmonic>, .tells_waves = true},
+    Entry{.name = "realtime", .make = make<Realtime>, .tells_waves = true},
+    Entry{.name = "smoothed", .make = make<Smoothed>, .tells_waves = true},
+    Entry{.name = "spectral", .make = make<Spectral>, .tells_waves = true},
+    Entry{.name = "directional", .make = make<Directional>, .tells_waves = false},
 };
 
 }  // namespace
@@ -39,6 +41,11 @@ std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const Entry& entry : kMethods) names.emplace_back(entry.name);
   return names;
+}
+
+bool tells_waves(std::string_view name) {
+  return std::any_of(kMethods.begin(), kMethods.end(),
+                     [&](const Entry& entry) { return entry.name == name && entry.tells_waves; });
 }
 
 std::unique_ptr<Method> make_method(std::string_view name, const MethodSettings& settings) {

@@ -55,5 +55,7 @@ class Method {
 // Throws UserError for an unknown name, naming the known ones.
 std::unique_ptr<Method> make_method(std::string_view name, const MethodSettings& settings);
 std::vector<std::string> method_names();
+// One of ours that tells its waves itself: where it tells none it found none.
+bool tells_waves(std::string_view name);
 
 }  // namespace waverig::estimator

@@ -57,7 +57,10 @@ RunJudge::RunJudge(std::string run, const JudgeSettings& settings)
 
 RunJudge::OfMethod& RunJudge::of(std::string_view method) {
   const auto at = methods_.find(method);
-  return at != methods_.end() ? at->second : methods_.emplace(method, OfMethod{}).first->second;
+  if (at != methods_.end()) return at->second;
+  OfMethod& added = methods_.emplace(method, OfMethod{}).first->second;
+  added.tells_waves = settings_.tells_waves(method);
+  return added;
 }
 
 void RunJudge::add(const run_t& message) {
@@ -83,7 +86,7 @@ void RunJudge::add(std::string_view method, const estimator::HeaveSample& heave)
   if (!steady(heave.utime) || !std::isfinite(heave.heave_m)) return;
   OfMethod& m = of(method);
   const Heave sample{heave.utime, heave.heave_m, heave.heave_sigma_m};
-  if (m.waves.empty() && (m.series.empty() || m.series.back().utime < sample.utime))
+  if (!m.tells_waves && m.waves.empty() && (m.series.empty() || m.series.back().utime < sample.utime))
     m.series.push_back(sample);
   if (truth_.empty() || truth_.last_utime() < heave.utime)
     m.pending.push_back(sample);
@@ -167,7 +170,7 @@ RunResult RunJudge::result_of(const std::string& name, OfMethod& method) const {
   }
 
   const double steady_s = static_cast<double>(steady_end_ - steady_begin_) * kMicrosecond;
-  if (method.waves.empty() && !method.series.empty() && steady_s > 0) {
+  if (!method.tells_waves && method.waves.empty() && !method.series.empty() && steady_s > 0) {
     method.waves = counted_waves(method);
     result.heave_coverage = covered_s(method) / steady_s;
   }

@@ -26,6 +26,9 @@ struct JudgeSettings {
   Motion motion = Motion::kUnknown;
   std::map<std::string, double, std::less<>>
       heave_bound_m{};  // of methods whose sea is known (heave_bound.h)
+  // Methods that tell their waves themselves: where one tells none there is none. Of all others' heave the
+  // waves are counted.
+  std::function<bool(std::string_view method)> tells_waves = [](std::string_view) { return false; };
 };
 
 struct RunRecord;
@@ -55,6 +58,7 @@ class RunJudge {
     std::vector<estimator::SeaState> seas;
     std::vector<Heave> pending;  // heave that the truth has not reached yet
     HeaveComparison comparison;
+    bool tells_waves = false;
     std::vector<Heave> series;  // of a method that gives no waves of its own: they are counted in its heave
   };
 

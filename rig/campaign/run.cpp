@@ -87,7 +87,8 @@ void float_on_sea(Bus& bus, const CampaignSettings& campaign, const CampaignUnit
 
 evaluation::JudgeSettings judge_settings(const CampaignUnit& unit) {
   return {.noise_density_mps2_rthz = unit.settings.accelerometer.noise_density_mps2,
-          .sample_rate_hz = 1 / unit.settings.sample_interval_s};
+          .sample_rate_hz = 1 / unit.settings.sample_interval_s,
+          .tells_waves = estimator::tells_waves};
 }
 
 evaluation::JudgeSettings judge_settings(const CampaignSettings& campaign, const CampaignUnit& unit,

@@ -98,11 +98,11 @@ class Collector : public estimator::Output {
 
   void flush() { writer_.flush(); }
   void close() { writer_.close(); }
-  // The method's own waves; of a method that gives none, the zero-up-crossing waves of its heave.
-  std::vector<estimator::Wave> waves() const {
-    if (!waves_.empty()) return waves_;
-    return evaluation::waves_of(
-        evaluation::count_waves(series_.utime, series_.heave_m, {.interpolate_extremes = true}));
+  // The method's own waves; of a method that tells none, the zero-up-crossing waves of its heave.
+  std::vector<estimator::Wave> waves(const std::string& method) const {
+    if (estimator::tells_waves(method)) return waves_;
+    return evaluation::waves_of(evaluation::count_waves(
+        series_.utime, series_.heave_m, {.interpolate_extremes = true}, series_.heave_sigma_m));
   }
   const evaluation::HeaveSeries& heave_series() const { return series_; }
   const std::vector<estimator::SeaState>& seas() const { return seas_; }
@@ -239,7 +239,7 @@ int estimate(const EstimateArguments& arguments) {
   check_time_unit(arguments.input, record.watch.usual_interval_s());
   check_units(record, arguments);
 
-  const std::vector<estimator::Wave> waves = collector.waves();
+  const std::vector<estimator::Wave> waves = collector.waves(arguments.method);
   evaluation::Summary summary = evaluation::summary_of(arguments.method, waves);
   summary.flags |= collector.flags();
   std::vector<estimator::SeaState> seas = sea_states.finish();

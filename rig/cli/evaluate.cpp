@@ -23,6 +23,7 @@
 #include "estimator/evaluation/summary.h"
 #include "estimator/evaluation/waves_csv.h"
 #include "estimator/evaluation/zero_crossing.h"
+#include "estimator/method.h"
 #include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
@@ -162,10 +163,15 @@ void add_other_heave(evaluation::RunRecord& record, const std::string& method, c
   }
 }
 
-// The sensor's rate and noise and the bounds of its sea, as far as log and earlier results tell them.
+// The sensor's rate and noise and the bounds of its sea, as far as log and earlier results tell them. What
+// came as heave alone tells no waves, whatever its name.
 evaluation::JudgeSettings judge_settings(const evaluation::RunRecord& record,
-                                         const evaluation::CampaignResults& earlier) {
+                                         const evaluation::CampaignResults& earlier,
+                                         const std::map<std::string, fs::path>& others) {
   evaluation::JudgeSettings settings;
+  settings.tells_waves = [&others](std::string_view method) {
+    return !others.contains(std::string(method)) && estimator::tells_waves(method);
+  };
   if (record.imu.size() > 1)
     settings.sample_rate_hz =
         static_cast<double>(record.imu.size() - 1) /
@@ -213,7 +219,7 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
   for (const fs::path& log : logs) {
     evaluation::RunRecord record = evaluation::load_run(log);
     for (const auto& [name, heave] : others) add_other_heave(record, name, heave);
-    auto runs = evaluation::judge(record, judge_settings(record, results));
+    auto runs = evaluation::judge(record, judge_settings(record, results, others));
     if (runs.empty())
       throw UserError(fmt::format("{}: no method to judge in it; expected the log of a run", log.string()));
     for (auto& run : runs) {

@@ -166,6 +166,10 @@ TEST(Program, RemarksOnHeaveThatDoesNotFitTheRun) {
   const Outcome down = give("down", 0, -1, 1);
   EXPECT_EQ(down.status, 0);
   EXPECT_NE(down.err.find("upside down"), std::string::npos) << down.err;
+  const Outcome named = run(temporary, "evaluate done --heave smoothed=good --out named");
+  const std::size_t row = named.out.find(",smoothed,");
+  ASSERT_NE(row, std::string::npos) << named.out;
+  EXPECT_GE(std::stoi(named.out.substr(row + 10)), 5) << "counted in heave alone, whatever its name\n" << named.out;
   const Outcome taken = run(temporary, "evaluate done --heave harmonic=good --out taken");
   EXPECT_EQ(taken.status, 2);
   EXPECT_NE(taken.err.find("expected another name"), std::string::npos) << taken.err;

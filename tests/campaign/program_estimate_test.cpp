@@ -11,6 +11,7 @@
 #include "estimator/calibration/accelerometer_calibration.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/event_log.h"
+#include "motion/kinematics/random.h"
 #include "tests/campaign/program.h"
 
 namespace waverig {
@@ -299,6 +300,32 @@ TEST(Program, TellsHeaveInOrderOfTimeWhereSamplesComeAgain) {
     const Outcome again = run(temporary, "evaluate out/heave.csv --out again");
     EXPECT_EQ(again.status, 0) << method << again.err;
   }
+}
+
+// Five minutes of noise about gravity: millimetres of heave that cross their zero line, which the methods know for
+// noise. Counted by whoever asks for it they carry the heave's own sigma, which is larger than they are.
+TEST(Program, TellsNoWavesOfASensorAtRest) {
+  const TemporaryDirectory temporary;
+  std::string rest = "utime,ax,ay,az,gx,gy,gz\n";
+  RandomStream random(1, "rest");
+  for (int row = 0; row < 30000; ++row) {
+    rest += std::to_string(row * 10000);
+    for (const double mean : {0.0, 0.0, -9.80665})
+      rest.append(",").append(std::to_string(mean + random.gaussian(0.0245)));
+    for (int axis = 0; axis < 3; ++axis) rest.append(",").append(std::to_string(random.gaussian(0.002)));
+    rest += "\n";
+  }
+  temporary.write("rest.csv", rest);
+  for (const std::string method : {"smoothed", "spectral"}) {
+    const Outcome outcome = run(temporary, "estimate rest.csv --out out --method " + method);
+    ASSERT_EQ(outcome.status, 0) << method << outcome.err;
+    EXPECT_EQ(number_in(outcome.out, "waves"), 0) << method << outcome.out;
+    EXPECT_NE(outcome.out.find("too_few_waves"), std::string::npos) << method << outcome.out;
+    EXPECT_EQ(bytes_of(temporary / "out/waves.csv").find('\n') + 1, bytes_of(temporary / "out/waves.csv").size());
+  }
+  const Outcome counted = run(temporary, "evaluate out/heave.csv --out counted");
+  EXPECT_GT(number_in(counted.out, "waves"), 20);
+  EXPECT_GT(number_in(counted.out, "expanded_uncertainty_m"), number_in(counted.out, "mean_height_m")) << counted.out;
 }
 
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {

@@ -231,6 +231,23 @@ TEST(RunJudge, CountsTheWavesOfAMethodThatGivesHeaveOnly) {
   EXPECT_NEAR(r.statistics.mean_period_s, kPeriod, 1e-3);
 }
 
+// Its heave is noise then, in which anything that counts crossings sees waves.
+TEST(RunJudge, BelievesAMethodThatTellsWavesThatThereAreNone) {
+  RunJudge judge("run", {.tells_waves = [](std::string_view method) { return method == "ours"; }});
+  play(judge, [&](std::int64_t t) {
+    estimator::HeaveSample h;
+    h.utime = t;
+    h.heave_m = 1.02 * true_heave(t);
+    judge.add("ours", h);
+    judge.add("theirs", h);
+  });
+  const auto results = judge.finish();
+  EXPECT_EQ(results.at(0).statistics.waves, 0);
+  EXPECT_EQ(results.at(0).statistics.flags, flag::kTooFewWaves);
+  EXPECT_NEAR(results.at(0).heave_gain, 1.02, 1e-6);
+  EXPECT_EQ(results.at(1).statistics.waves, 7);
+}
+
 RunResult of_heave(double gain, double sigma_m, std::int64_t from, std::int64_t to,
                    JudgeSettings settings = {}) {
   RunJudge judge("run", settings);

@@ -6,6 +6,7 @@
 
 #include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/results_io.h"
+#include "estimator/method.h"
 #include "lcmtypes/error.h"
 #include "rig/campaign/sweep.h"
 #include "rig/cli/nodes/addresses.h"
@@ -53,7 +54,7 @@ void refuse_unless_whole(Ending ending, const rig::RunWatch& watch, const std::s
 
 int run_evaluator(const EvaluatorArguments& arguments) {
   evaluation::CampaignResults results;
-  evaluation::JudgeSettings judging;
+  evaluation::JudgeSettings judging{.tells_waves = estimator::tells_waves};
   std::string resolved;
   results.name = arguments.run;
   if (!arguments.campaign.empty()) {
