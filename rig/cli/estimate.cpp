@@ -17,6 +17,7 @@
 #include "estimator/evaluation/waves_csv.h"
 #include "estimator/evaluation/zero_crossing.h"
 #include "estimator/method.h"
+#include "estimator/sample_guard.h"
 #include "lcmtypes/atomic_file.h"
 #include "lcmtypes/error.h"
 #include "lcmtypes/flags.h"
@@ -43,21 +44,27 @@ struct EstimateArguments {
   double declination_deg = 0;
 };
 
-// The unit rests at the start of the record: what the gyroscope reads there is its bias.
+// The unit rests at the start of the record: what the gyroscope reads there is its bias. One reading that is
+// none, or one bad time stamp, must not spoil the mean of all; that the accelerometer does not change is no
+// fault of a unit at rest.
 SampleSource without_gyro_bias(SampleSource source, double rest_s, const fs::path& path) {
   auto rest = std::make_shared<std::vector<ImuSample>>();
+  estimator::SampleGuard guard({.flat_line_s = 0});
   Vector3d sum = Vector3d::Zero();
+  std::int64_t usable = 0, begin_utime = 0;
+  double rested_s = 0;
   ImuSample sample;
-  while (source(sample)) {
+  while (rested_s < rest_s && source(sample)) {
     rest->push_back(sample);
+    if (!guard.check(sample).usable) continue;
+    if (usable++ == 0) begin_utime = sample.utime;
+    rested_s = static_cast<double>(sample.utime - begin_utime) * kMicrosecond;
     sum += sample.w_NB_B;
-    if (static_cast<double>(sample.utime - rest->front().utime) * kMicrosecond >= rest_s) break;
   }
-  const double recorded_s = static_cast<double>(rest->back().utime - rest->front().utime) * kMicrosecond;
-  if (recorded_s < rest_s)
-    throw UserError(fmt::format("{}: lasts {:.1f} s; expected more than --rest-seconds {:g}", path.string(),
-                                recorded_s, rest_s));
-  const Vector3d bias_radps = sum / static_cast<double>(rest->size());
+  if (rested_s < rest_s)
+    throw UserError(fmt::format("{}: usable samples for {:.1f} s; expected more than --rest-seconds {:g}",
+                                path.string(), rested_s, rest_s));
+  const Vector3d bias_radps = sum / static_cast<double>(usable);
   return [source = std::move(source), rest, bias_radps, next = std::size_t{0}](ImuSample& out) mutable {
     if (next < rest->size())
       out = (*rest)[next++];

@@ -282,22 +282,28 @@ TEST(Program, EstimatesARecordingWithOneSampleBeyondAllReason) {
 // Every sample three times, as a gateway that repeats itself: the series of heave grows in time all the same.
 TEST(Program, TellsHeaveInOrderOfTimeWhereSamplesComeAgain) {
   const TemporaryDirectory temporary;
-  EventLogWriter writer(temporary / "thrice.lcm");
-  imu_t m{};
-  std::vector<std::uint8_t> data(static_cast<std::size_t>(m.getEncodedSize()));
-  for (m.seq = 0; m.seq < 12000; ++m.seq) {
-    m.utime = 10000 * m.seq;
-    m.accel_mps2[2] = -9.80665 + 1.2337 * std::cos(2 * std::numbers::pi * static_cast<double>(m.seq) / 400);
-    m.encode(data.data(), 0, m.getEncodedSize());
-    for (int times = 0; times < 3; ++times) writer.write(m.utime, channel::kImu, data.data(), data.size());
-  }
-  writer.close();
+  const auto record = [&](const std::string& name, int times) {
+    EventLogWriter writer(temporary / name);
+    imu_t m{};
+    std::vector<std::uint8_t> data(static_cast<std::size_t>(m.getEncodedSize()));
+    for (m.seq = 0; m.seq < 12000; ++m.seq) {
+      m.utime = 10000 * m.seq;
+      m.accel_mps2[2] = -9.80665 + 1.2337 * std::cos(2 * std::numbers::pi * static_cast<double>(m.seq) / 400);
+      m.encode(data.data(), 0, m.getEncodedSize());
+      for (int i = 0; i < times; ++i) writer.write(m.utime, channel::kImu, data.data(), data.size());
+    }
+    writer.close();
+  };
+  record("once.lcm", 1);
+  record("thrice.lcm", 3);
   for (const std::string method : {"harmonic", "lee2014"}) {
-    const Outcome outcome = run(temporary, "--version >/dev/null; ulimit -t 60 -v 4000000; " WAVERIG_PROGRAM
-                                           " estimate thrice.lcm --netcdf --out out --method " + method);
-    ASSERT_EQ(outcome.status, 0) << method << outcome.err;
-    EXPECT_NEAR(number_in(outcome.out, "mean_height_m"), 1, 0.02) << method;
-    const Outcome again = run(temporary, "evaluate out/heave.csv --out again");
+    const Outcome once = run(temporary, "estimate once.lcm --out once --method " + method);
+    const Outcome thrice = run(temporary, "--version >/dev/null; ulimit -t 60; ulimit -v 4000000; " WAVERIG_PROGRAM
+                                          " estimate thrice.lcm --netcdf --out thrice --method " + method);
+    ASSERT_EQ(thrice.status, 0) << method << thrice.err;
+    EXPECT_GT(number_in(thrice.out, "waves"), 20) << method;
+    EXPECT_EQ(bytes_of(temporary / "thrice/heave.csv"), bytes_of(temporary / "once/heave.csv")) << method;
+    const Outcome again = run(temporary, "evaluate thrice/heave.csv --out again");
     EXPECT_EQ(again.status, 0) << method << again.err;
   }
 }
@@ -326,6 +332,40 @@ TEST(Program, TellsNoWavesOfASensorAtRest) {
   const Outcome counted = run(temporary, "evaluate out/heave.csv --out counted");
   EXPECT_GT(number_in(counted.out, "waves"), 20);
   EXPECT_GT(number_in(counted.out, "expanded_uncertainty_m"), number_in(counted.out, "mean_height_m")) << counted.out;
+}
+
+// A gyroscope that reads 0.05 rad/s too much, and in its rest one reading beyond all reason, one that is no number and
+// one a day ahead: heave as without them.
+TEST(Program, TakesTheBiasAtRestFromUsableSamplesAlone) {
+  const TemporaryDirectory temporary;
+  const auto record = [&](const std::string& name, bool spoiled) {
+    EventLogWriter writer(temporary / name);
+    imu_t m{};
+    std::vector<std::uint8_t> data(static_cast<std::size_t>(m.getEncodedSize()));
+    RandomStream random(1, "rest");
+    for (m.seq = 0; m.seq < 12000; ++m.seq) {
+      const double t_s = 0.01 * static_cast<double>(m.seq);
+      m.utime = 10000 * m.seq + (spoiled && m.seq == 300 ? 86'400'000'000 : 0);
+      m.accel_mps2[2] = -9.80665 + random.gaussian(0.01) + (t_s < 5 ? 0 : 1.2337 * std::sin(std::numbers::pi / 2 * (t_s - 5)));
+      m.gyro_radps[0] = spoiled && m.seq == 100 ? 1e30 : spoiled && m.seq == 200 ? std::nan("") : 0.05;
+      m.encode(data.data(), 0, m.getEncodedSize());
+      writer.write(10000 * m.seq, channel::kImu, data.data(), data.size());
+    }
+    writer.close();
+  };
+  record("sound.lcm", false);
+  record("spoiled.lcm", true);
+  const Outcome sound = run(temporary, "estimate sound.lcm --rest-seconds 5 --out sound"),
+                spoiled = run(temporary, "estimate spoiled.lcm --rest-seconds 5 --out spoiled");
+  ASSERT_EQ(sound.status, 0) << sound.err;
+  ASSERT_EQ(spoiled.status, 0) << spoiled.err;
+  EXPECT_EQ(number_in(spoiled.out, "samples_left_out"), 3) << spoiled.out;
+  EXPECT_EQ(number_in(spoiled.out, "waves"), number_in(sound.out, "waves"));
+  EXPECT_NEAR(number_in(spoiled.out, "mean_height_m"), number_in(sound.out, "mean_height_m"), 1e-3);
+  EXPECT_NEAR(number_in(sound.out, "mean_height_m"), 1, 0.02);
+  const Outcome brief = run(temporary, "estimate spoiled.lcm --rest-seconds 200 --out brief");
+  EXPECT_EQ(brief.status, 2);
+  EXPECT_EQ(brief.err, "waverig: spoiled.lcm: usable samples for 120.0 s; expected more than --rest-seconds 200\n");
 }
 
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
