@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "estimator/calibration/sample_steps.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::estimator {
@@ -43,6 +44,7 @@ struct Stretch {
 };
 
 std::vector<Stretch> stretches(std::span<const ImuSample> samples, const RotationFitSettings& settings) {
+  const double longest_s = longest_step_s(samples);
   std::vector<Stretch> found;
   std::size_t begin = 0;
   while (begin + 1 < samples.size()) {
@@ -51,7 +53,7 @@ std::vector<Stretch> stretches(std::span<const ImuSample> samples, const Rotatio
     while (end < samples.size() && !gap) {
       const double step_s = static_cast<double>(samples[end].utime - samples[end - 1].utime) * kMicrosecond;
       const double length_s = static_cast<double>(samples[end].utime - samples[begin].utime) * kMicrosecond;
-      gap = !(step_s > 0 && step_s <= settings.longest_step_s);
+      gap = !(step_s > 0 && step_s <= longest_s);
       if (!gap && half == begin && length_s >= 0.5 * settings.window_s) half = end;
       if (!gap && length_s >= settings.window_s) break;
       ++end;

@@ -3,9 +3,9 @@
 //
 // A hand does accelerate what it turns. So the readings of a window are first carried into one frame by the
 // gyroscope and averaged there: what is left of the acceleration is the change of velocity over the window's
-// length, and seconds are long enough. |mean of R_k A (f_m - b)| = g, A = M^-1, is then fitted over all
-// windows. It holds for any rotation of f, so M is found up to a rotation: the one that leaves it symmetric,
-// the nearest to the sensor's own axes, is taken (9 unknowns).
+// length, and seconds are long enough. No window spans a gap (sample_steps.h). |mean of R_k A (f_m - b)| = g,
+// A = M^-1, is then fitted over all windows. It holds for any rotation of f, so M is found up to a rotation:
+// the one that leaves it symmetric, the nearest to the sensor's own axes, is taken (9 unknowns).
 #pragma once
 #include <span>
 
@@ -16,7 +16,6 @@ namespace waverig::estimator {
 
 struct RotationFitSettings {
   double window_s = 4;               // half overlapping
-  double longest_step_s = 0.1;       // a longer one between samples is a gap: no window spans it
   double rest_scatter_radps = 0.01;  // a window whose angular rate scatters less is at rest
   double outlier_mps2 = 0.03;        // residuals beyond it count less (Huber)
   int fewest_windows = 20;

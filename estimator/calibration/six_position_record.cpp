@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "estimator/calibration/sample_steps.h"
 #include "lcmtypes/error.h"
 
 namespace waverig::estimator {
@@ -40,15 +41,9 @@ std::optional<std::size_t> position_of(const Vector3d& f_B, double largest_tilt_
   return std::nullopt;
 }
 
-// By the median step: gaps do not count.
 std::size_t samples_per_window(std::span<const ImuSample> samples, double window_s) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < samples.size(); ++i)
-    steps_s.push_back(static_cast<double>(samples[i].utime - samples[i - 1].utime) * kMicrosecond);
-  if (steps_s.empty()) return 2;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(window_s / std::max(*middle, 1e-6))));
+  const double step_s = std::max(median_step_s(samples), kMicrosecond);
+  return std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(window_s / step_s)));
 }
 
 GyroscopeCalibration offset_of(const std::vector<Vector3d>& rates) {
@@ -66,6 +61,7 @@ GyroscopeCalibration offset_of(const std::vector<Vector3d>& rates) {
 SixPositionRecord fit_six_position_record(std::span<const ImuSample> samples, double gravity_mps2,
                                           const SixPositionRecordSettings& settings) {
   const std::size_t size = samples_per_window(samples, settings.window_s);
+  const double longest_s = longest_step_s(samples);
   std::vector<PositionRecorder> recorders(6, PositionRecorder(static_cast<std::int64_t>(size)));
   std::vector<Vector3d> rates;
   SixPositionRecord record;
@@ -77,8 +73,7 @@ SixPositionRecord fit_six_position_record(std::span<const ImuSample> samples, do
     const Spread force = spread_of(window, &ImuSample::f_B), rate = spread_of(window, &ImuSample::w_NB_B);
     const auto position = position_of(force.mean, settings.largest_tilt_rad);
     const bool still = force.largest_std < settings.still_force_mps2 &&
-                       rate.largest_std < settings.still_rate_radps &&
-                       !has_gap(window, settings.longest_step_s);
+                       rate.largest_std < settings.still_rate_radps && !has_gap(window, longest_s);
     if (!still || !position) {
       begin += std::max<std::size_t>(1, size / 4);
       continue;

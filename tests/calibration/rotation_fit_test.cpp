@@ -140,6 +140,24 @@ TEST(RotationFit, LeavesGapsOut) {
   EXPECT_LT((fit_rotation(holed, kG).calibration.M - some_unit().M).cwiseAbs().maxCoeff(), 1e-4);
 }
 
+// Ten samples a second, every other one 15 ms late: steps of 85 and 115 ms, of which none is a gap. What is left is
+// the gyroscope's trapezoidal error.
+TEST(RotationFit, TakesARecordingOfTenSamplesASecondWithJitter) {
+  const auto fast = turned_by_hand(300, 0, 0, Vector3d::Zero(), 1);
+  std::vector<ImuSample> slow;
+  for (std::size_t i = 0; i + 2 < fast.size(); i += 10) {
+    slow.push_back(fast[i]);
+    if (slow.size() % 2 != 0) continue;
+    slow.back().utime += 15'000;
+    slow.back().f_B += 1.5 * (fast[i + 1].f_B - fast[i].f_B);
+    slow.back().w_NB_B += 1.5 * (fast[i + 1].w_NB_B - fast[i].w_NB_B);
+  }
+  const RotationFit fit = fit_rotation(slow, kG);
+  EXPECT_GT(fit.windows, 140);
+  EXPECT_LT((fit.calibration.M - some_unit().M).cwiseAbs().maxCoeff(), 2e-3);
+  EXPECT_LT((fit.calibration.b_mps2 - some_unit().b_mps2).norm(), 0.02);
+}
+
 std::vector<ImuSample> recording(const std::string& file) {
   const char* set = std::getenv("WAVERIG_DATA");
   const std::filesystem::path folder =

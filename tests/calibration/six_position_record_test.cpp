@@ -122,5 +122,20 @@ TEST(SixPositionRecord, TakesNoMeanAcrossAGap) {
   EXPECT_LT((a.fit.calibration.M - b.fit.calibration.M).cwiseAbs().maxCoeff(), 2e-4);
 }
 
+// Ten samples a second whose times miss by up to 30 ms: steps of up to 160 ms, of which none is a gap.
+TEST(SixPositionRecord, TakesARecordingOfTenSamplesASecondWithJitter) {
+  const auto fast = recording(six(), 20, 1);
+  std::vector<ImuSample> slow;
+  RandomStream jitter(1, "jitter");
+  for (std::size_t i = 0; i < fast.size(); i += 10) {
+    slow.push_back(fast[i]);
+    slow.back().utime += std::llround(jitter.uniform(-0.03, 0.03) / kMicrosecond);
+  }
+  const SixPositionRecord record = fit_six_position_record(slow, kStandardGravity);
+  for (const double still_s : record.still_s) EXPECT_NEAR(still_s, 19, 1.01);
+  EXPECT_LT((record.fit.calibration.M - published().M).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT((record.fit.calibration.b_mps2 - published().b_mps2).cwiseAbs().maxCoeff(), 0.01);
+}
+
 }  // namespace
 }  // namespace waverig::estimator
