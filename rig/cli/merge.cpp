@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -31,14 +32,19 @@ struct MergeArguments {
 };
 
 // Nobody takes a shard away while it is read: neither another program, nor --replace where the shard is what
-// an earlier one left unfinished.
+// an earlier one left unfinished. A shard that is named twice is held once: it is refused for that, not for
+// this program's being at work in it.
 std::vector<rig::DirectoryLock> held(const std::vector<std::filesystem::path>& shards) {
   std::vector<rig::DirectoryLock> locks;
-  for (const std::filesystem::path& shard : shards) {
-    auto lock = rig::DirectoryLock::take(shard);
+  for (auto shard = shards.begin(); shard != shards.end(); ++shard) {
+    std::error_code ignored;  // of a shard that is not there: refused by the lock
+    if (std::any_of(shards.begin(), shard,
+                    [&](const auto& before) { return std::filesystem::equivalent(before, *shard, ignored); }))
+      continue;
+    auto lock = rig::DirectoryLock::take(*shard);
     if (!lock)
       throw UserError(
-          fmt::format("{}: another waverig is at work in it; expected a finished shard", shard.string()));
+          fmt::format("{}: another waverig is at work in it; expected a finished shard", shard->string()));
     locks.push_back(std::move(*lock));
   }
   return locks;
@@ -48,13 +54,13 @@ int merge(const MergeArguments& arguments) {
   const std::vector<std::filesystem::path> shards(arguments.shards.begin(), arguments.shards.end());
   const std::string command =
       fmt::format("waverig merge {} --out {}", fmt::join(arguments.shards, " "), arguments.out);
+  const std::vector<rig::DirectoryLock> locks = held(shards);
   const rig::Campaign campaign = rig::read_campaign(shards.front() / evaluation::kSettingsFile);
   std::vector<std::string> expected_runs;
   for (const rig::RunPlan& run : rig::plan_campaign(campaign.settings).runs)
     expected_runs.push_back(run.name);
   evaluation::CampaignResults results = evaluation::merged(shards, expected_runs);
   results.command = command;
-  const std::vector<rig::DirectoryLock> locks = held(shards);
 
   using Mode = rig::ResultsDirectory::Mode;
   rig::ResultsDirectory directory(arguments.out, arguments.replace ? Mode::kReplace : Mode::kFresh,

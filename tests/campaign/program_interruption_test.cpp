@@ -88,6 +88,21 @@ TEST(Program, AnInterruptedMergeIsNoResultAndIsDoneAnew) {
   EXPECT_FALSE(std::filesystem::exists(temporary / "all.partial"));
 }
 
+// What it holds while another program is at work in it says nothing yet.
+TEST(Program, AMergeReadsNoShardThatAnotherProgramHolds) {
+  const TemporaryDirectory temporary;
+  temporary.write("c.toml", kTwoSettings);
+  for (const std::string number : {"1", "2"})
+    ASSERT_EQ(run(temporary, "sweep c.toml --out part" + number + " --shard " + number + "/2").status, 0);
+  temporary.write("part2/results.json", "half of wh");
+  const Outcome held = run(temporary, "--version >/dev/null; flock part2 " WAVERIG_PROGRAM " merge part1 part2 --out all");
+  EXPECT_EQ(held.status, 2);
+  EXPECT_EQ(held.err, "waverig: part2: another waverig is at work in it; expected a finished shard\n");
+  const Outcome twice = run(temporary, "merge part1 ./part1 --out all");
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_EQ(twice.err.find("at work"), std::string::npos) << twice.err;
+}
+
 TEST(Program, AMergeThatIsRefusedLeavesNothing) {
   const TemporaryDirectory temporary;
   temporary.write("c.toml", kTwoSettings);
