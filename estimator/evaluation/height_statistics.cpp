@@ -2,11 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "lcmtypes/flags.h"
 
 namespace waverig::evaluation {
-namespace {}  // namespace
+namespace {
+
+// Expanded uncertainty of what has this budget.
+double expanded_m(std::span<const Contribution> budget) {
+  double variance = 0;
+  for (const Contribution& c : budget) variance += c.sigma_m * c.sigma_m;
+  return kCoverageFactor * std::sqrt(variance);
+}
+
+}  // namespace
 
 void HeightAccumulator::KnownMean::add(double value) {
   if (!std::isfinite(value)) return;
@@ -75,12 +85,6 @@ HeightStatistics HeightAccumulator::statistics(double set_height_m, double bound
   if (std::any_of(s.budget.begin(), s.budget.end(), [](const Contribution& c) { return c.type == 'B'; }))
     s.expanded_uncertainty_m = expanded_m(s.budget);
   return s;
-}
-
-double expanded_m(std::span<const Contribution> budget) {
-  double variance = 0;
-  for (const Contribution& c : budget) variance += c.sigma_m * c.sigma_m;
-  return kCoverageFactor * std::sqrt(variance);
 }
 
 double error_rate_percent(double mean_height_m, double set_height_m) {

@@ -1,7 +1,6 @@
 // Statistics and uncertainty budget of single waves: over a run, and over the repeats of a setting.
 #pragma once
 #include <cstdint>
-#include <span>
 
 #include "estimator/evaluation/results.h"
 
@@ -44,9 +43,6 @@ class HeightAccumulator {
   double frequency_variance_sum_ = 0;  // over records
   std::int32_t flags_ = 0;
 };
-
-// Expanded uncertainty of what has this budget.
-double expanded_m(std::span<const Contribution> budget);
 
 // 100 |mean - set| / set, REFERENCE section 2.
 double error_rate_percent(double mean_height_m, double set_height_m);

@@ -38,7 +38,7 @@ Summary summary_of(const std::string& method, std::span<const estimator::Wave> w
   Summary s = summary_of(method, statistics_of(counted));
   const HeightStatistics heights = accumulator.statistics(estimator::kUnknown, estimator::kUnknown);
   s.budget = heights.budget;
-  if (!s.budget.empty()) s.expanded_uncertainty_m = expanded_m(s.budget);
+  s.expanded_uncertainty_m = heights.expanded_uncertainty_m;
   s.flags |= heights.flags;
   return s;
 }

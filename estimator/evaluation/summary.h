@@ -32,7 +32,7 @@ struct Summary {
 // Counted waves of a heave series.
 Summary summary_of(const std::string& method, const WaveStatistics& statistics);
 // Single waves as a method found them, with the expanded uncertainty (k = 2) of their mean height and what it
-// is made of: of waves that state none, the scatter of a finite number of them alone, type A.
+// is made of (height_statistics.h).
 Summary summary_of(const std::string& method, std::span<const estimator::Wave> waves);
 
 // Spectral sea state, and direction where it is known: of the longest block, where there are several.
