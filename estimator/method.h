@@ -32,7 +32,7 @@ struct SensorKnowledge {
 struct MethodSettings {
   SensorKnowledge sensor;
   CompassSettings compass{};  // used where samples carry a magnetic field
-  double fixed_lag_s = 0;     // for methods that may answer late
+  double fixed_lag_s = 0;     // for methods that may answer late: of heave behind its newest sample
 };
 
 // Receives what a method finds; a method may call it at any time during add() and finish().
@@ -52,7 +52,7 @@ class Method {
   virtual void finish(Output& output) = 0;  // the record ends: give what is still held back
 };
 
-// Throws UserError for an unknown name, naming the known ones.
+// Throws UserError for an unknown name, naming the known ones, and for a lag that the method does not know.
 std::unique_ptr<Method> make_method(std::string_view name, const MethodSettings& settings);
 std::vector<std::string> method_names();
 // One of ours that tells its waves itself: where it tells none it found none.

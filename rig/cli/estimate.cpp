@@ -39,7 +39,7 @@ using estimator::ImuSample;
 struct EstimateArguments {
   std::string input, out, method, calibration;
   bool netcdf = false;
-  double rest_s = 0;
+  double rest_s = 0, lag_s = 0;
   double gravity_mps2 = kStandardGravity;
   double declination_deg = 0;
 };
@@ -129,7 +129,8 @@ class Collector : public estimator::Output {
 // asked for.
 class SeaStates : public estimator::Output {
  public:
-  SeaStates(const std::string& chosen, const estimator::MethodSettings& settings) {
+  SeaStates(const std::string& chosen, estimator::MethodSettings settings) {
+    settings.fixed_lag_s = 0;  // the chosen one's
     for (const std::string& name : estimator::method_names())
       if (name != chosen && (name == "spectral" || name == "directional"))
         methods_.push_back(estimator::make_method(name, settings));
@@ -191,6 +192,7 @@ std::string summary_json(const evaluation::Summary& summary, const EstimateArgum
   made_of["gravity_mps2"] = arguments.gravity_mps2;
   made_of["declination_deg"] = arguments.declination_deg;
   made_of["rest_s"] = arguments.rest_s;
+  if (arguments.lag_s > 0) made_of["lag_s"] = arguments.lag_s;
   made_of["samples"] = record.watch.samples();
   made_of["samples_left_out"] = record.watch.left_out();
   made_of["begin_utime"] = record.begin_utime;
@@ -217,6 +219,7 @@ int estimate(const EstimateArguments& arguments) {
       arguments.calibration.empty() ? samples_of(arguments.input) : uncalibrated_samples_of(arguments.input);
   estimator::MethodSettings settings;
   settings.sensor.gravity_mps2 = arguments.gravity_mps2;
+  settings.fixed_lag_s = arguments.lag_s;
   settings.compass.declination_rad = arguments.declination_deg * kDegree;
   if (!arguments.calibration.empty()) {
     const auto calibration = estimator::load_calibration(arguments.calibration);
@@ -309,6 +312,10 @@ void add_estimate(CLI::App& app, Command& chosen) {
       ->add_option("--rest-seconds", arguments->rest_s,
                    "The unit rests so long at the start: take the gyroscope's bias there")
       ->check(not_negative());
+  command
+      ->add_option("--lag-s", arguments->lag_s,
+                   "realtime: tell heave so much later, by what came meanwhile, as on a buoy that may wait")
+      ->check(not_negative());
   command->add_option("--gravity", arguments->gravity_mps2, "Local gravity, m/s^2")
       ->check(between(9.7, 9.9))
       ->capture_default_str();
@@ -326,6 +333,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  waverig estimate recording.csv.gz --out results/mine --rest-seconds 5\n"
       "  waverig estimate recording.csv.gz --calibration unit7.json --out results/mine\n"
+      "  waverig estimate recording.csv.gz --method realtime --lag-s 2 --out results/late\n"
       "  waverig estimate results/table2/runs/T12.00s_H100.0cm_r1.lcm --out results/again --method lee2014");
   command->callback([arguments, &chosen] { chosen = [arguments] { return estimate(*arguments); }; });
 }

@@ -128,11 +128,13 @@ void add_estimator(CLI::App& nodes, Command& chosen) {
   command->add_option("--campaign", a->campaign, "For what is known of sensor and place");
   command->add_option("--calibration", a->calibration,
                       "calibration.json, for what it says of its own uncertainty");
+  command->add_option("--lag-s", a->lag_s, "realtime: tell heave so much later, by what came meanwhile")
+      ->check(not_negative());
   command->add_flag("--one-record", a->one_record, "End after one record");
   command->footer(
       "Examples:\n"
       "  waverig node estimator harmonic --campaign rig/default.toml --one-record\n"
-      "  waverig node estimator realtime --calibration results/default/calibration.json");
+      "  waverig node estimator realtime --calibration results/default/calibration.json --lag-s 2");
 }
 
 void add_evaluator(CLI::App& nodes, Command& chosen) {

@@ -368,6 +368,24 @@ TEST(Program, TakesTheBiasAtRestFromUsableSamplesAlone) {
   EXPECT_EQ(brief.err, "waverig: spoiled.lcm: usable samples for 120.0 s; expected more than --rest-seconds 200\n");
 }
 
+// A minute into the record, which is row 6000.
+TEST(Program, TellsHeaveOfRealtimeWithLessUncertaintyWhereItMayWait) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  const auto sigma_m = [&](const std::string& lag) {
+    const Outcome outcome = run(temporary, "estimate wave.csv --method realtime " + lag + " --out out");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::string heave = bytes_of(temporary / "out/heave.csv");
+    const std::size_t row = heave.find("\n60000000,");
+    EXPECT_NE(row, std::string::npos);
+    return std::stod(heave.substr(heave.find(',', row + 11) + 1));
+  };
+  const double at_once_m = sigma_m(""), late_m = sigma_m("--lag-s 2");
+  EXPECT_EQ(number_in(bytes_of(temporary / "out/summary.json"), "lag_s"), 2);
+  EXPECT_GT(late_m, 0);
+  EXPECT_LT(late_m, 0.8 * at_once_m);
+}
+
 TEST(Program, KeepsAnEarlierEstimateWhereTheNextFails) {
   const TemporaryDirectory temporary;
   temporary.write("wave.csv", wave_record());

@@ -331,6 +331,7 @@ TEST_F(Laboratory, BadAddressesAndMissingDevicesAreOneSentenceAndExitTwo) {
                           "udpm://239.255.76.67:7667?ttl=x", ""})
     refuses({"estimator", "harmonic", "--bus", url}, "--bus");
   refuses({"estimator", "nobodys", "--bus", bus_url()}, "nobodys");
+  refuses({"estimator", "harmonic", "--lag-s", "2", "--bus", bus_url()}, "expected no lag");
   refuses({"acquisition", campaign, "--serial", path("none"), "--bus", bus_url()}, "none");
   refuses({"acquisition", campaign, "--serial", campaign, "--bus", bus_url()}, "short.toml");
   refuses({"rig-sim", campaign, "--run", "T1", "--bus", bus_url()}, kRun);

@@ -26,7 +26,8 @@ estimator::MethodSettings method_settings(const EstimatorArguments& arguments) {
 }  // namespace
 
 int run_estimator(const EstimatorArguments& arguments) {
-  const estimator::MethodSettings settings = method_settings(arguments);
+  estimator::MethodSettings settings = method_settings(arguments);
+  settings.fixed_lag_s = arguments.lag_s;
   Requests requests;
   Bus bus = open_bus(arguments.bus);
   const rig::EstimatorNode node(bus, arguments.method, settings);

@@ -27,6 +27,7 @@ int run_acquisition(const AcquisitionArguments& arguments);
 
 struct EstimatorArguments {
   std::string method, bus, campaign, calibration;
+  double lag_s = 0;
   bool one_record = false;
 };
 int run_estimator(const EstimatorArguments& arguments);
