@@ -34,9 +34,4 @@ double height_bound_m(const BoundSettings& settings) {
   return 2 * std::sqrt(crest.dot(covariance * crest));
 }
 
-double dense_height_bound_m(double period_s, double noise_density_mps2_rthz) {
-  const double w = 2 * std::numbers::pi / period_s;
-  return 2 / (w * w) * noise_density_mps2_rthz / std::sqrt(period_s);
-}
-
 }  // namespace waverig::evaluation

@@ -17,10 +17,7 @@ struct BoundSettings {
 // Standard deviation that no unbiased estimator of H from one whole wave can undercut, from the inverse of
 // the Fisher matrix of (P, Q, c0, c1) over the samples of that wave. NaN where the noise is unknown or the
 // wave has fewer than five samples. From crest to crest the drift c1 is orthogonal to the height; from any
-// other phase it costs.
+// other phase it costs. Sampled densely from crest to crest it is (2 / w^2) nd / sqrt(T).
 double height_bound_m(const BoundSettings& settings);
-
-// Its limit for dense sampling from crest to crest: (2 / w^2) nd / sqrt(T).
-double dense_height_bound_m(double period_s, double noise_density_mps2_rthz);
 
 }  // namespace waverig::evaluation

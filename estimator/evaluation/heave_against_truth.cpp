@@ -47,9 +47,8 @@ HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& 
   }
 
   HeaveComparison comparison;
-  const auto edge = static_cast<std::size_t>(std::llround(settings.edge_s * rate_hz));
   std::size_t row = 0;
-  for (std::size_t i = std::max<std::size_t>(1, edge); i + 1 + edge < count; ++i) {
+  for (std::size_t i = 1; i + 1 < count; ++i) {
     const std::int64_t utime = begin + static_cast<std::int64_t>(i) * step;
     while (row + 1 < truth.utime.size() && truth.utime[row + 1] <= utime) ++row;
     const bool known =
@@ -60,7 +59,7 @@ HeaveComparison compare_with_truth(const HeaveSeries& heave, const HeaveSeries& 
   }
   if (comparison.samples() == 0)
     throw UserError(
-        "heave and truth: nothing to compare between gaps, edges and where the truth does not move; expected "
+        "heave and truth: nothing to compare between gaps and where the truth does not move; expected "
         "some time in which both tell heave");
   return comparison;
 }

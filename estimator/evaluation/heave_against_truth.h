@@ -7,7 +7,6 @@ namespace waverig::evaluation {
 
 struct AgainstTruthSettings {
   double high_pass_hz = 0;  // both series, zero phase; 0: only the means are removed
-  double edge_s = 0;        // left out at both ends of what is compared
 };
 
 // Compares at the truth's instants that lie within the heave series, in no gap of either, and whose truth is

@@ -20,7 +20,6 @@ class SampleCsvReader {
  public:
   explicit SampleCsvReader(const std::filesystem::path& path);
   bool next(estimator::ImuSample& sample);
-  bool has_magnetometer() const { return mag_ >= 0; }
 
  private:
   CsvReader csv_;

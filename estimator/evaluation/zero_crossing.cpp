@@ -43,11 +43,6 @@ ZeroLine zero_line(std::span<const std::int64_t> utime, std::span<const double> 
   return line;
 }
 
-double longest_gap_s(std::span<const std::int64_t> utime, const ZeroCrossingSettings& settings) {
-  if (settings.longest_gap_s > 0 || utime.size() < 2) return settings.longest_gap_s;
-  return static_cast<double>(longest_step(utime)) * kMicrosecond;
-}
-
 // An up-crossing: its interpolated time and the first sample at or above the zero line.
 struct Crossing {
   std::int64_t utime;
@@ -99,13 +94,13 @@ std::vector<CountedWave> count_waves(std::span<const std::int64_t> utime, std::s
   std::vector<double> h(heave_m.size());
   for (std::size_t i = 0; i < h.size(); ++i)
     h[i] = heave_m[i] - line.level_m - line.slope_mps * seconds(utime[0], utime[i]);
-  const double gap_s = longest_gap_s(utime, settings);
+  const std::int64_t longest = utime.size() < 2 ? 0 : longest_step(utime);
 
   std::vector<CountedWave> waves;
   for (std::size_t begin = 0; begin < h.size();) {
     std::size_t end = begin;  // the piece without a gap that begins here
     while (end < h.size() && std::isfinite(h[end]) &&
-           (end == begin || seconds(utime[end - 1], utime[end]) <= gap_s))
+           (end == begin || utime[end] - utime[end - 1] <= longest))
       ++end;
     const auto crossings = up_crossings(utime, h, begin, end, settings.dead_band_m);
     for (std::size_t k = 0; k + 1 < crossings.size(); ++k) {

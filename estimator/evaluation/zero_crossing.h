@@ -19,7 +19,6 @@ struct ZeroCrossingSettings {
   bool remove_trend = false;  // … or its straight line of least squares
   double level_m = 0;         // … and this much above it
   double dead_band_m = 0;     // a crossing counts once the heave has left +- this band on the other side
-  double longest_gap_s = 0;   // no wave reaches over a longer gap; 0: three times the median interval
   bool interpolate_extremes =
       false;  // crest and trough by a parabola through three samples; else the samples' own
 };
@@ -33,8 +32,9 @@ struct CountedWave {
   double sigma_m = estimator::kUnknown;  // standard uncertainty of the height, where the heave's is stated
 };
 
-// utime in microseconds, growing; heave in metres, up; NaN is a gap. Both of one length, as is what the heave
-// states of its standard uncertainty (k = 1), unless that is empty.
+// utime in microseconds, growing; heave in metres, up; NaN is a gap, and so is a step of more than three
+// median intervals: no wave reaches over one. Both of one length, as is what the heave states of its standard
+// uncertainty (k = 1), unless that is empty.
 //
 // Of a stated sigma nobody tells how much is noise and how much goes with the heave, as a wrong scale does,
 // which lifts the crest and sinks the trough. So the height is given the sum of both sigmas, the most that it

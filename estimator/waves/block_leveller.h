@@ -49,8 +49,6 @@ class BlockLeveller {
   void add(const ImuSample& sample, const GuardVerdict& verdict, std::deque<LevelledSample>& out);
   void finish(std::deque<LevelledSample>& out);
 
-  const Vector3d& gyro_bias_B() const { return bias_B_; }  // rad/s, of the last block
-
  private:
   struct Raw {
     LevelledSample levelled;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "motion/envelope.h"
 #include "motion/kinematics/frames.h"
 #include "motion/kinematics/random.h"
 
@@ -16,13 +17,13 @@ constexpr double kDensity = 350e-6 * kStandardGravity;  // MMA7331LC class, REFE
 
 // REFERENCE section 3: 0.26 cm at 6 s and 0.72 cm at 12 s.
 TEST(HeightBound, GivesThePublishedFigures) {
-  EXPECT_NEAR(dense_height_bound_m(6, kDensity), 0.0026, 0.00005);
-  EXPECT_NEAR(dense_height_bound_m(12, kDensity), 0.0072, 0.00005);
+  EXPECT_NEAR(height_bound_m({6, kDensity, 100}), 0.0026, 0.00005);
+  EXPECT_NEAR(height_bound_m({12, kDensity, 100}), 0.0072, 0.00005);
 }
 
 TEST(HeightBound, ApproachesTheClosedFormFromCrestToCrest) {
   for (const double period_s : {2.0, 6.0, 12.0, 20.0})
-    EXPECT_NEAR(height_bound_m({period_s, kDensity, 100}) / dense_height_bound_m(period_s, kDensity), 1, 1e-9)
+    EXPECT_NEAR(height_bound_m({period_s, kDensity, 100}) / motion::height_sigma_bound_m(period_s, kDensity), 1, 1e-9)
         << period_s;
 }
 

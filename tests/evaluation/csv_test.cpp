@@ -187,10 +187,13 @@ TEST(SampleCsv, ReadsARealRecording) {
   const auto file = recordings() / "broad10_translation.csv.gz";
   WAVERIG_NEEDS_RECORDING(file);
   SampleCsvReader reader(file);
-  EXPECT_TRUE(reader.has_magnetometer());
   estimator::ImuSample s;
-  std::int64_t first = 0, rows = 0;
-  while (reader.next(s)) first = rows++ == 0 ? s.utime : first;
+  std::int64_t first = 0, rows = 0, magnetic = 0;
+  while (reader.next(s)) {
+    first = rows++ == 0 ? s.utime : first;
+    magnetic += (s.flags & flag::kNoMagnetometer) == 0;
+  }
+  EXPECT_GT(magnetic, 0);
   EXPECT_NEAR(static_cast<double>(s.utime - first) * 1e-6, 194, 1);
   EXPECT_NEAR(static_cast<double>(rows - 1) / (static_cast<double>(s.utime - first) * 1e-6), 285.7, 0.1);
 }

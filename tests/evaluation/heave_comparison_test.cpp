@@ -117,17 +117,6 @@ TEST(HeaveAgainstTruth, LeavesOutWhatIsUnknownOrAtRest) {
   EXPECT_LT(c.rmse_m(), 1e-3);
 }
 
-TEST(HeaveAgainstTruth, LeavesOutTheEdgesAtBothEnds) {
-  const HeaveSeries truth = series(100, 100, 0, 0);
-  HeaveSeries heave = truth;
-  for (std::size_t i = 0; i < heave.heave_m.size(); ++i)
-    if (i < 950 || i >= 9050) heave.heave_m[i] += i < 950 ? 1 : -1;
-  EXPECT_GT(compare_with_truth(heave, truth, {}).rmse_m(), 0.1);
-  const auto c = compare_with_truth(heave, truth, {.edge_s = 10});
-  EXPECT_LT(c.rmse_m(), 1e-9);
-  EXPECT_NEAR(c.samples(), 8000, 4);
-}
-
 // The straight line over a gap is nobody's estimate, and nobody's truth.
 TEST(HeaveAgainstTruth, LeavesOutTheGapsOfEither) {
   const HeaveSeries whole = series(100, 100, 0, 0);
@@ -154,7 +143,6 @@ TEST(HeaveAgainstTruth, RefusesWhereNothingIsLeftToCompare) {
   HeaveSeries still = heave;
   still.moving.assign(still.utime.size(), false);
   EXPECT_THROW(compare_with_truth(heave, still, {}), UserError);
-  EXPECT_THROW(compare_with_truth(heave, heave, {.edge_s = 6}), UserError);
   EXPECT_THROW(compare_with_truth(heave, heave, {.high_pass_hz = 50}), UserError) << "nothing passes";
   EXPECT_NO_THROW(compare_with_truth(heave, heave, {.high_pass_hz = 49}));
 }

@@ -8,11 +8,11 @@
 #include <waverig/run_t.hpp>
 #include <waverig/truth_t.hpp>
 
-#include "estimator/evaluation/bound.h"
 #include "estimator/evaluation/cells.h"
 #include "estimator/evaluation/run_record.h"
 #include "lcmtypes/flags.h"
 #include "lcmtypes/phase.h"
+#include "motion/envelope.h"
 
 namespace waverig::evaluation {
 namespace {
@@ -168,7 +168,7 @@ TEST(RunJudge, StatesTheBoundOfTheOrderedPeriod) {
   play(judge, [&](std::int64_t t) {
     if (t == 18 * kSecond) judge.add("m", wave_at(t, 0.58));
   });
-  EXPECT_NEAR(judge.finish().at(0).statistics.bound_std_m, dense_height_bound_m(kPeriod, 3e-3), 1e-9);
+  EXPECT_NEAR(judge.finish().at(0).statistics.bound_std_m, motion::height_sigma_bound_m(kPeriod, 3e-3), 1e-9);
 }
 
 TEST(RunJudge, PassesOnTheBoundOfHeaveToTheMethodItIsMeantFor) {
