@@ -230,65 +230,86 @@ std::string excluded_section(const CampaignResults& results, const fs::path& dir
   return out + "</section>\n";
 }
 
+double error_m(const evaluation::JudgedWave& wave) { return wave.wave.height_m - wave.true_height_m; }
+
+// None where no wave has a known error.
+const evaluation::JudgedWave* worst_of(const RunResult& run) {
+  const evaluation::JudgedWave* worst = nullptr;
+  for (const evaluation::JudgedWave& wave : run.waves)
+    if (std::isfinite(error_m(wave)) &&
+        (worst == nullptr || std::abs(error_m(wave)) > std::abs(error_m(*worst))))
+      worst = &wave;
+  return worst;
+}
+
+std::string single_waves(const RunResult& run) {
+  HtmlTable table(
+      fmt::format("Single waves of {}, {}", run.run, run.method),
+      {"Wave", "Start s", "Period s", "Height cm", "True cm", "Error cm", "Noise \u03C3 cm", "Flags"});
+  const std::int64_t first_utime = run.waves.empty() ? 0 : run.waves.front().wave.start_utime;
+  for (const evaluation::JudgedWave& wave : run.waves)
+    table.add_row({number_cell(static_cast<double>(wave.wave.seq), 0),
+                   number_cell(static_cast<double>(wave.wave.start_utime - first_utime) * kMicrosecond, 2),
+                   number_cell(wave.wave.period_s, 3), number_cell(cm(wave.wave.height_m), 2),
+                   number_cell(cm(wave.true_height_m), 2), number_cell(cm(error_m(wave)), 2),
+                   number_cell(cm(wave.wave.noise_sigma_m), 2),
+                   text_cell(joined(evaluation::flag_names(wave.wave.flags)))},
+                  wave_id(run, wave));
+  return fmt::format(
+      "<details class=\"waves\" id=\"{}\"><summary>{}, {}: {} "
+      "waves</summary><div>{}</div></details>\n",
+      run_id(run), html_text(run.run), html_text(run.method), run.waves.size(),
+      table.html(HtmlTable::Caption::kHeard));
+}
+
+HtmlCell recording_cell(const RunResult& run) {
+  return inner_cell(html_link("runs/" + run.run + ".lcm", run.run + ".lcm"));
+}
+
+std::vector<HtmlCell> run_row(const RunResult& run) {
+  const evaluation::HeightStatistics& s = run.statistics;
+  const std::string here = fmt::format("#{}", run_id(run));
+  const evaluation::JudgedWave* worst = worst_of(run);
+  return {inner_cell(html_link(here, run.run)),
+          number_cell(run.repeat + 1, 0),
+          number_cell(static_cast<double>(s.waves), 0, here),
+          number_cell(cm(s.mean_height_m), 2, here),
+          number_cell(cm(s.mean_true_height_m), 2, here),
+          number_cell(cm(s.std_m), 2, here),
+          number_cell(cm(s.rmse_m), 2, here),
+          worst == nullptr ? number_cell(kAuto, 2)
+                           : number_cell(cm(error_m(*worst)), 2, fmt::format("#{}", wave_id(run, *worst))),
+          recording_cell(run)};
+}
+
+// Of a method that tells no waves the recordings alone.
+std::string runs_of_cell(const CampaignResults& results, const CellResult& cell) {
+  const bool waves_told = gives_waves(results, cell.method);
+  const std::vector<std::string> head =
+      waves_told ? std::vector<std::string>{"Run",     "Repeat",           "Waves",
+                                            "Mean cm", "True mean cm",     "Std cm",
+                                            "RMSE cm", "Largest error cm", "Recording"}
+                 : std::vector<std::string>{"Run", "Repeat", "Recording"};
+  HtmlTable table(fmt::format("{}, {}", setting_text(cell), cell.method), head);
+  std::string waves;
+  for (const RunResult& run : results.runs) {
+    if (run.period_s != cell.period_s || run.height_m != cell.height_m || run.method != cell.method) continue;
+    if (waves_told) {
+      table.add_row(run_row(run));
+      waves += single_waves(run);
+    } else {
+      table.add_row({text_cell(run.run), number_cell(run.repeat + 1, 0), recording_cell(run)});
+    }
+  }
+  if (table.empty()) return "";
+  return fmt::format("<section id=\"{}\"><h3>{}, {}</h3>\n", cell_id(cell), html_text(setting_text(cell)),
+                     html_text(cell.method)) +
+         table.html(HtmlTable::Caption::kHeard) + waves + "</section>\n";
+}
+
 std::string runs_section(const CampaignResults& results) {
   std::string out = "<section id=\"runs\"><h2>Runs and waves</h2>\n";
-  for (const CellResult& cell : results.cells) {
-    HtmlTable table(fmt::format("{}, {}", setting_text(cell), cell.method),
-                    {"Run", "Repeat", "Waves", "Mean cm", "True mean cm", "Std cm", "RMSE cm",
-                     "Largest error cm", "Recording"});
-    HtmlTable recordings(fmt::format("{}, {}", setting_text(cell), cell.method),
-                         {"Run", "Repeat", "Recording"});
-    const bool waves_told = gives_waves(results, cell.method);
-    std::string waves;
-    for (const RunResult& run : results.runs) {
-      if (run.period_s != cell.period_s || run.height_m != cell.height_m || run.method != cell.method)
-        continue;
-      const HtmlCell recording = inner_cell(html_link("runs/" + run.run + ".lcm", run.run + ".lcm"));
-      if (!waves_told) {
-        recordings.add_row({text_cell(run.run), number_cell(run.repeat + 1, 0), recording});
-        continue;
-      }
-      const evaluation::JudgedWave* worst = nullptr;
-      HtmlTable list(
-          fmt::format("Single waves of {}, {}", run.run, run.method),
-          {"Wave", "Start s", "Period s", "Height cm", "True cm", "Error cm", "Noise \u03C3 cm", "Flags"});
-      const std::int64_t first_utime = run.waves.empty() ? 0 : run.waves.front().wave.start_utime;
-      for (const evaluation::JudgedWave& wave : run.waves) {
-        const double error_m = wave.wave.height_m - wave.true_height_m;
-        if (std::isfinite(error_m) &&
-            (worst == nullptr || std::abs(error_m) > std::abs(worst->wave.height_m - worst->true_height_m)))
-          worst = &wave;
-        list.add_row({number_cell(static_cast<double>(wave.wave.seq), 0),
-                      number_cell(static_cast<double>(wave.wave.start_utime - first_utime) * kMicrosecond, 2),
-                      number_cell(wave.wave.period_s, 3), number_cell(cm(wave.wave.height_m), 2),
-                      number_cell(cm(wave.true_height_m), 2), number_cell(cm(error_m), 2),
-                      number_cell(cm(wave.wave.noise_sigma_m), 2),
-                      text_cell(joined(evaluation::flag_names(wave.wave.flags)))},
-                     wave_id(run, wave));
-      }
-      const evaluation::HeightStatistics& s = run.statistics;
-      const std::string here = fmt::format("#{}", run_id(run));
-      table.add_row({inner_cell(html_link(here, run.run)), number_cell(run.repeat + 1, 0),
-                     number_cell(static_cast<double>(s.waves), 0, here),
-                     number_cell(cm(s.mean_height_m), 2, here),
-                     number_cell(cm(s.mean_true_height_m), 2, here), number_cell(cm(s.std_m), 2, here),
-                     number_cell(cm(s.rmse_m), 2, here),
-                     worst == nullptr ? number_cell(kAuto, 2)
-                                      : number_cell(cm(worst->wave.height_m - worst->true_height_m), 2,
-                                                    fmt::format("#{}", wave_id(run, *worst))),
-                     recording});
-      waves += fmt::format(
-          "<details class=\"waves\" id=\"{}\"><summary>{}, {}: {} "
-          "waves</summary><div>{}</div></details>\n",
-          run_id(run), html_text(run.run), html_text(run.method), run.waves.size(),
-          list.html(HtmlTable::Caption::kHeard));
-    }
-    const HtmlTable& shown = waves_told ? table : recordings;
-    if (shown.empty()) continue;
-    out += fmt::format("<section id=\"{}\"><h3>{}, {}</h3>\n", cell_id(cell), html_text(setting_text(cell)),
-                       html_text(cell.method)) +
-           shown.html(HtmlTable::Caption::kHeard) + waves + "</section>\n";
-  }
+  for (const CellResult& cell : results.cells) out += runs_of_cell(results, cell);
   return out + "</section>\n";
 }
 
