@@ -12,7 +12,7 @@ constexpr int kSettledChanges = 20;  // changes seen before a spike can be told 
 constexpr int kStep = 3;             // so many jumps in a row are a step, not a spike
 constexpr double kForgotten = 5;     // intervals after which the last sample says nothing of the next
 constexpr double kForget = 0.02;     // of the usual change, per sample
-constexpr double kSlowest_s = 0.3;   // of intervals: before theirs is known, a longer one is a gap
+constexpr double kSlowest_s = 1;     // of intervals: before theirs is known, a longer one is a gap
 constexpr int kNewRate = 10;         // so many gaps in a row are no gaps but a slower rate
 constexpr double kFar_s = 60;        // ahead; a bad time stamp less far silences for no longer
 constexpr std::int64_t kLatest_us = std::int64_t{1} << 62;  // so that no difference of times overflows
@@ -56,13 +56,16 @@ bool SampleGuard::flat(const ImuSample& s) {
 }
 
 bool SampleGuard::spike(const ImuSample& s) {
-  const double change = (s.f_B - last_f_B_).cwiseAbs().maxCoeff();
-  const double limit = std::max(settings_.spike_floor_mps2, settings_.spike_ratio * usual_change_mps2_);
-  if (settings_.spike_ratio > 0 && changes_ >= kSettledChanges && change > limit && ++jumps_ < kStep)
-    return true;
+  const double change_mps2 = (s.f_B - last_f_B_).cwiseAbs().maxCoeff();
+  const double change_radps = (s.w_NB_B - last_w_NB_B_).cwiseAbs().maxCoeff();
+  const double ratio = settings_.spike_ratio;
+  const bool jumps = change_mps2 > std::max(settings_.spike_floor_mps2, ratio * usual_change_mps2_) ||
+                     change_radps > std::max(settings_.spike_floor_radps, ratio * usual_change_radps_);
+  if (ratio > 0 && changes_ >= kSettledChanges && jumps && ++jumps_ < kStep) return true;
   if (jumps_ < kStep) {  // the change that ends a step says nothing of the usual one
-    usual_change_mps2_ +=
-        (changes_ < kSettledChanges ? 1.0 / (changes_ + 1) : kForget) * (change - usual_change_mps2_);
+    const double share = changes_ < kSettledChanges ? 1.0 / (changes_ + 1) : kForget;
+    usual_change_mps2_ += share * (change_mps2 - usual_change_mps2_);
+    usual_change_radps_ += share * (change_radps - usual_change_radps_);
     if (changes_ < kSettledChanges) ++changes_;
   }
   jumps_ = 0;
@@ -120,6 +123,7 @@ GuardVerdict SampleGuard::check(const ImuSample& s) {
   started_ = true;
   last_utime_ = s.utime;
   last_f_B_ = s.f_B;
+  last_w_NB_B_ = s.w_NB_B;
   return verdict;
 }
 

@@ -6,7 +6,8 @@
 //   repeated or out-of-order time                 kRange         not usable (there is a sample of that time)
 //   samples missing before this one               kGap           usable; dt_s spans the gap
 //   a minute or more missing before this one      kGap           not usable, the next one is; else a bad time stamp
-//   one sample far off the way of its neighbours  kSpike         not usable (three in a row are a step and pass)
+//   specific force or rate of one sample far off
+//     the way of its neighbours                   kSpike         not usable (three in a row are a step and pass)
 //   the same reading for flat_line_s              kFlatLine      not usable until it changes
 //   an axis at its limit                          kSaturation    usable for its time and rate; f_B is wrong
 // clang-format on
@@ -28,6 +29,7 @@ struct SampleGuardSettings {
   double flat_line_s = 1.0;       // all three accelerometer axes without the least change; 0: off
   double spike_ratio = 15;        // times the usual change from sample to sample; 0: off
   double spike_floor_mps2 = 1.0;  // a smaller jump is never a spike
+  double spike_floor_radps = 3;   // a board that is knocked makes 1
   double gap_ratio = 1.8;         // times the usual interval
 };
 
@@ -59,10 +61,10 @@ class SampleGuard {
   std::int64_t last_utime_ = 0;                           // of the last usable sample
   std::int64_t newest_utime_ = -(std::int64_t{1} << 62);  // usable or not
   std::optional<std::int64_t> ahead_utime_;               // far ahead of it, not believed yet
-  Vector3d last_f_B_ = Vector3d::Zero();
+  Vector3d last_f_B_ = Vector3d::Zero(), last_w_NB_B_ = Vector3d::Zero();
   double interval_s_ = 0;
   std::array<double, 3> latest_s_{};  // intervals
-  double usual_change_mps2_ = 0;
+  double usual_change_mps2_ = 0, usual_change_radps_ = 0;
   int changes_ = 0, jumps_ = 0, intervals_ = 0, gaps_ = 0;
   Vector3d flat_f_B_ = Vector3d::Constant(kUnknown);
   std::int64_t flat_since_ = 0;

@@ -208,5 +208,32 @@ TEST_F(SampleGuardTest, FlagsSaturationAndKeepsTheFlagsOfTheSample) {
   }
 }
 
+
+// A bit that flips turns the frame over for good, if the attitude believes it.
+TEST_F(SampleGuardTest, RefusesASpikeOfTheGyroscopeToo) {
+  feed(0, 200);
+  for (const double spike_radps : {4.0, -30.0}) {
+    ImuSample s = sample(200);
+    s.w_NB_B.y() = spike_radps;
+    const GuardVerdict verdict = guard_.check(s);
+    EXPECT_FALSE(verdict.usable);
+    EXPECT_EQ(verdict.flags, flag::kSpike);
+  }
+  feed(201, 300);
+}
+
+TEST_F(SampleGuardTest, FindsNoGapsInASlowEvenRecord) {
+  for (const std::int64_t interval_us : {312'500, 400'000, 781'250, 1'000'000}) {
+    SampleGuard guard;
+    for (int i = 0; i < 50; ++i) {
+      ImuSample s = sample(i);
+      s.utime = i * interval_us;
+      const GuardVerdict verdict = guard.check(s);
+      EXPECT_EQ(verdict.flags, 0) << interval_us << " us, sample " << i;
+      EXPECT_EQ(verdict.anew, i == 0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace waverig::estimator
