@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <complex>
+#include <utility>
 
 #include "estimator/compass/cross_spectra.h"
 #include "lcmtypes/error.h"
@@ -152,7 +153,7 @@ void DirectionalSea::fill(SeaState& sea) const {
 }
 
 DirectionalAnalysis::DirectionalAnalysis(const DirectionalSettings& settings)
-    : settings_(settings), sums_(std::make_unique<Sums>()) {
+    : settings_(settings), mean_(settings.bin_s), sums_(std::make_unique<Sums>()) {
   if (!(settings.bin_s > 0 && settings.segment_s >= settings.shortest_segment_s && settings.lowest_Hz > 0 &&
         settings.highest_Hz > settings.lowest_Hz && settings.noise_from_Hz > settings.highest_Hz &&
         settings.noise_from_Hz < 0.5 / settings.bin_s &&
@@ -166,24 +167,24 @@ DirectionalAnalysis::DirectionalAnalysis(const DirectionalSettings& settings)
 DirectionalAnalysis::~DirectionalAnalysis() = default;
 
 void DirectionalAnalysis::add(const LevelSample& sample) {
-  const auto index = static_cast<std::int64_t>(
-      std::floor(static_cast<double>(sample.utime) * kMicrosecond / settings_.bin_s));
-  if (!started_ || index != open_index_) {
-    if (started_) {
-      close_bin();
-      const std::int64_t longest =
-          static_cast<std::int64_t>(segment_bins_);  // more says no more than a whole segment
-      for (std::int64_t i = open_index_ + 1; i < std::min(index, open_index_ + longest); ++i) {
-        open_ = {};
-        close_bin();
-      }
-    }
-    open_ = {};
-    open_index_ = index;
+  const auto begin = [&] { mean_.start(sample.utime, sample.a_L.array()); };
+  if (!started_) {
+    begin();
     started_ = true;
+  } else if (const double gap_s = static_cast<double>(sample.utime - mean_.last_utime()) * kMicrosecond;
+             gap_s > settings_.largest_gap_s) {
+    open_ = {};
+    const double longest = static_cast<double>(segment_bins_);  // more says no more than a whole segment
+    for (auto missing = std::lround(std::min(gap_s / settings_.bin_s, longest)); missing > 0; --missing)
+      close_bin();
+    begin();
+  } else {
+    mean_.add(sample.utime, sample.a_L.array(), [&](std::int64_t, const Increment<Eigen::Array3d>& whole) {
+      open_.a_L = whole.speed_mps.matrix() / settings_.bin_s;
+      open_.seen = true;
+      close_bin();
+    });
   }
-  open_.a_L += sample.a_L;
-  ++open_.samples;
   if (sample.has_field) {
     open_.m_L += sample.q_LB * settings_.compass.calibration.apply(sample.m_B_uT);
     ++open_.fields;
@@ -191,9 +192,8 @@ void DirectionalAnalysis::add(const LevelSample& sample) {
 }
 
 void DirectionalAnalysis::close_bin() {
-  if (open_.samples > 0) open_.a_L /= open_.samples;
   if (open_.fields > 0) open_.m_L /= open_.fields;
-  bins_.push_back(open_);
+  bins_.push_back(std::exchange(open_, {}));
   if (bins_.size() > segment_bins_) bins_.pop_front();
   ++closed_;
   if (closed_ < segment_bins_ || (closed_ - segment_bins_) % (segment_bins_ / kHannSteps) != 0) return;
@@ -233,7 +233,7 @@ bool DirectionalAnalysis::usable() const {
   const auto longest = static_cast<int>(settings_.largest_gap_s / settings_.bin_s);
   int gap = 0, fields = 0;
   for (const Bin& bin : bins_) {
-    gap = bin.samples > 0 ? 0 : gap + 1;
+    gap = bin.seen ? 0 : gap + 1;
     if (gap > longest) return false;
     fields += bin.fields > 0;
   }
@@ -272,7 +272,7 @@ void DirectionalAnalysis::analyse(const std::vector<double>& window) {
   std::vector<double> up(bins), to_north(bins), to_east(bins);
   Vector3d a_L = Vector3d::Zero();
   for (std::size_t i = 0; i < bins; ++i) {
-    if (bins_[i].samples > 0) a_L = bins_[i].a_L;
+    if (bins_[i].seen) a_L = bins_[i].a_L;
     const double angle_rad = north.at(static_cast<double>(i)), c = std::cos(angle_rad),
                  sn = std::sin(angle_rad);
     up[i] = -a_L.z();
@@ -288,7 +288,6 @@ void DirectionalAnalysis::analyse(const std::vector<double>& window) {
 }
 
 DirectionalSea DirectionalAnalysis::finish() {
-  if (started_) close_bin();
   analyse_end();
   DirectionalSea sea;
   sea.dropped_segments = sums_->dropped;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "estimator/compass/magnetic_calibration.h"
+#include "estimator/heave/path_integrator.h"
 #include "estimator/types.h"
 
 namespace waverig::estimator {
@@ -86,9 +87,10 @@ class DirectionalAnalysis {
 
  private:
   struct Bin {
-    Vector3d a_L = Vector3d::Zero();  // sums while open, means once closed
-    Vector3d m_L = Vector3d::Zero();
-    int samples = 0, fields = 0;
+    Vector3d a_L = Vector3d::Zero();  // mean
+    Vector3d m_L = Vector3d::Zero();  // sum while open, mean once closed
+    bool seen = false;                // else a gap
+    int fields = 0;
     double coverage = 0;  // sum of the squares of the windows that have seen it
   };
   struct Sums;
@@ -104,7 +106,7 @@ class DirectionalAnalysis {
   std::deque<Bin> bins_;    // the last segment's
   std::size_t closed_ = 0;  // bins since the record began
   Bin open_;
-  std::int64_t open_index_ = 0;  // utime / bin
+  Integrator<Eigen::Array3d> mean_;  // a bin's, whatever the times of its samples are
   bool started_ = false;
   std::unique_ptr<Sums> sums_;
 };

@@ -8,6 +8,8 @@
 namespace waverig::estimator {
 namespace {
 
+constexpr double kDead_s = 5;  // without the least change, which noise makes: no reading
+
 bool has_field(const ImuSample& sample) { return (sample.flags & flag::kNoMagnetometer) == 0; }
 
 // How far the body really wanders, as the white path that the attitude's bounded-path model takes it for:
@@ -34,9 +36,20 @@ DirectionalSea directional_sea(const std::vector<ImuSample>& samples,
   return analysis.finish();
 }
 
-void Directional::add(const ImuSample& sample, Output&) {
+void Directional::add(const ImuSample& raw, Output&) {
+  ImuSample sample = raw;
+  if (is_dead(sample)) sample.flags |= flag::kNoMagnetometer;
   record_.add(sample);
   has_field_ = has_field_ || has_field(sample);
+}
+
+bool Directional::is_dead(const ImuSample& sample) {
+  if (sample.m_B_uT != last_m_B_uT_) {
+    last_m_B_uT_ = sample.m_B_uT;
+    changed_utime_ = sample.utime;
+  }
+  return sample.m_B_uT.isZero() ||
+         static_cast<double>(sample.utime - changed_utime_) * kMicrosecond > kDead_s;
 }
 
 void Directional::finish(Output& output) {

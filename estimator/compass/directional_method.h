@@ -22,6 +22,10 @@ class Directional : public Method {
  private:
   MethodSettings settings_;
   Record record_;
+  bool is_dead(const ImuSample& sample);  // its magnetometer
+
+  Vector3d last_m_B_uT_ = Vector3d::Zero();
+  std::int64_t changed_utime_ = 0;
   bool has_field_ = false;
 };
 

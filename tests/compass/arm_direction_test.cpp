@@ -150,5 +150,16 @@ TEST(ArmDirection, IsNotToldWithoutAMagnetometer) {
   EXPECT_TRUE(std::isnan(told({compass.calibration, kDeclination}, samples).mean_direction_rad));
 }
 
+
+// A reading that never changes is none: it would turn with the body and tell a direction as firmly as a good one.
+TEST(ArmDirection, IsNotToldByADeadMagnetometer) {
+  const Compass compass(3);
+  auto samples = ride(compass, 0.5, 6.25, 1, 120, {0.1, -0.08, 0.15});
+  for (const Vector3d& reading_uT : {Vector3d(0, 0, 0), Vector3d(20, -3, 41)}) {
+    for (auto& sample : samples) sample.m_B_uT = reading_uT;
+    EXPECT_TRUE(std::isnan(told({compass.calibration, kDeclination}, samples).mean_direction_rad));
+  }
+}
+
 }  // namespace
 }  // namespace waverig

@@ -320,5 +320,24 @@ TEST(DirectionBudget, AddsItsContributions) {
   EXPECT_NEAR(direction_budget({0, 0, 0, 0.03, 0.04}, 60 * kDegree).total_rad(), 0.05, 1e-12);
 }
 
+
+// Bins of a fifth of a second hold no whole number of samples then, or stamps that fall on either side of an edge.
+TEST(DirectionalAnalysis, TellsTheSameSpreadAtAnyRateOfSamples) {
+  motion::SeaSettings settings;
+  settings.tp_s = 7;
+  settings.hm0_m = 2;
+  settings.direction_from_rad = 1;
+  settings.spreading_s = 0;
+  motion::FloatSettings level;
+  level.slope_following = 0;
+  motion::SeaMotion sea(motion::draw_components(settings), level);
+  for (const double rate_Hz : {8.0, 10.0, 12.5, 16.0, 25.6, 50.0}) {
+    const auto at = [&](double t) { return sea.at(std::llround(t * 1e6)); };
+    const DirectionalSea found = analysed(at, Presenter{.accel_noise_mps2 = 0.005}, 600, {}, rate_Hz);
+    EXPECT_LT(found.spread_rad, 2 * kDegree) << rate_Hz << " Hz";
+    EXPECT_LT(off_deg(found.mean_direction_rad, 1), 1) << rate_Hz << " Hz";
+  }
+}
+
 }  // namespace
 }  // namespace waverig::estimator
