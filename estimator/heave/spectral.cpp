@@ -21,6 +21,17 @@ constexpr int kSeveral = 3;              // blocks are better than a long one
 constexpr double kLowestResolved = 2.5;  // waves in a block
 constexpr double kFewWaves = 20;
 
+// Heave and its rate between two samples, as a cubic in time (Hermite).
+PathIncrement between(const HeaveSample& from, const HeaveSample& to, std::int64_t utime) {
+  const double dt = static_cast<double>(to.utime - from.utime) * kMicrosecond;
+  const double x = static_cast<double>(utime - from.utime) * kMicrosecond / dt;
+  const double p = to.heave_m - from.heave_m - dt * from.heave_rate_mps;
+  const double v = to.heave_rate_mps - from.heave_rate_mps;
+  return {
+      .speed_mps = from.heave_rate_mps + x * (6 * (1 - x) * p / dt + (3 * x - 2) * v),
+      .path_m = from.heave_m + x * dt * from.heave_rate_mps + x * x * ((3 - 2 * x) * p + (x - 1) * dt * v)};
+}
+
 // The nodes of one piece without a gap: second differences of the path, and smoothed heave and rate beside
 // them.
 struct Nodes {
@@ -39,11 +50,12 @@ std::vector<Nodes> nodes_of(const Record& record, const SmoothedRecord& smoothed
     integrator.start(record.samples()[begin].utime, -smoothed.attitude[begin].a_N.z());
     for (std::size_t i = begin + 1; i < end; ++i)
       integrator.add(record.samples()[i].utime, -smoothed.attitude[i].a_N.z(),
-                     [&](std::int64_t, const PathIncrement& whole) {
+                     [&](std::int64_t utime, const PathIncrement& whole) {
                        if (has_last) {
+                         const PathIncrement node = between(smoothed.heave[i - 1], smoothed.heave[i], utime);
                          nodes.second_difference_m.push_back(second_difference_m(last, whole, interval_s));
-                         nodes.heave_m.push_back(smoothed.heave[i].heave_m);
-                         nodes.rate_mps.push_back(smoothed.heave[i].heave_rate_mps);
+                         nodes.heave_m.push_back(node.path_m);
+                         nodes.rate_mps.push_back(node.speed_mps);
                        }
                        last = whole;
                        has_last = true;

@@ -148,5 +148,20 @@ TEST(Spectral, SaysWhenThereIsTooLittle) {
   EXPECT_TRUE(run_spectral({}).flags & flag::kTooFewWaves);
 }
 
+
+// The nodes of a short record lie between its samples, unless its rate happens to be a multiple of theirs.
+TEST(Spectral, TellsTheSamePeriodAtAnyRate) {
+  for (const double rate_Hz : {8.0, 10.0, 12.5, 20.0, 100.0})
+    for (const double period_s : {6.0, 10.0}) {
+      SyntheticWaves waves;
+      waves.period_s = period_s;
+      waves.height_m = 1;
+      waves.duration_s = 120;
+      waves.rate_Hz = rate_Hz;
+      const estimator::SeaState sea = run_spectral(synthesize(waves, SensorErrors{}, 1).samples);
+      EXPECT_NEAR(sea.tm02_s / period_s, 1, 0.01) << rate_Hz << " Hz, " << period_s << " s";
+    }
+}
+
 }  // namespace
 }  // namespace waverig::testing
