@@ -81,7 +81,7 @@ std::vector<OffsetChange> find_offset_changes(std::span<const LevelIncrement> in
     const double mps2 = best.change / dt,
                  noise_mps = std::sqrt(best.squares / static_cast<double>(speed.size()));
     found.push_back({first_utime + std::llround(static_cast<double>(from + at) * dt / kMicrosecond), mps2,
-                     noise_mps / std::abs(mps2) / std::sqrt(kIndependent)});
+                     std::hypot(noise_mps / std::abs(mps2) / std::sqrt(kIndependent), dt / std::sqrt(12))});
     a.tail(n - from - at).array() -= mps2;
   }
   std::sort(found.begin(), found.end(),

@@ -71,5 +71,19 @@ TEST(OffsetChanges, AreNotFoundWhereThereAreNone) {
   EXPECT_TRUE(found_in(changing_record(high, low, 300, 30, 1).samples).empty());
 }
 
+
+// The instant is looked for at nodes a quarter of a second apart, however plain the change is.
+TEST(OffsetChanges, StateWhenWithinASigmaThatHolds) {
+  for (const double at_s : {300.0, 300.06, 300.12, 300.19})
+    for (const double mps2 : {0.1, 1.0, 3.0}) {
+      SeaRecord record = sea_record({.tp_s = 6, .hm0_m = 1, .duration_s = 600}, 3);
+      change_offset(record, {at_s, mps2});
+      const auto found = found_in(record.samples);
+      ASSERT_EQ(found.size(), 1u) << at_s << " s, " << mps2;
+      EXPECT_LT(std::abs(static_cast<double>(found[0].utime) * kMicrosecond - 1 - at_s), 2.5 * found[0].sigma_s)
+          << at_s << " s, " << mps2 << " m/s2";
+    }
+}
+
 }  // namespace
 }  // namespace waverig::testing
