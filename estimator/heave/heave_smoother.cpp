@@ -27,8 +27,7 @@ constexpr double kOffsetWalk_m2ps5 = 1e-4;
 // By so much in log evidence, of the minutes about it, it was the offset that changed: of offsets that change
 // by 2 mg half a minute from the ends or further it is 100 to 230, of cranks that stop at most 57.
 constexpr double kChanged = 60, kAbout_s = 120;
-// At rest heave is what it was a node before, but for this part of the sea's heave rate.
-constexpr double kStillRate = 0.03, kStill_m = 1e-4;
+constexpr double kStill_m = 1e-4;  // at rest heave is what it was a node before, but for so much at least
 // Standard deviations of a rest's level, or of the mean of those that agree: chi square over their number.
 constexpr double kOffLevel = 3, kAgree = 3;
 

@@ -6,9 +6,9 @@
 namespace waverig::estimator {
 namespace {
 
-// Speed about its line: of a body at rest, over the sea's; its variance, over what the sensor's noise gives
-// it; of a body that moves as the sea does, over the sea's.
-constexpr double kStill = 0.03, kNoise = 4, kMoves = 0.7;
+// Variance of the speed about its line at rest, over what the sensor's noise gives it; that speed of a body
+// that moves as the sea does, over the sea's.
+constexpr double kNoise = 4, kMoves = 0.7;
 constexpr double kBetween_periods = 3;  // at most: what comes up more slowly is a sea all the time
 
 }  // namespace
@@ -24,7 +24,7 @@ Rests find_rests(const Eigen::VectorXd& speed_mps, double interval_s, const Pace
   // what that gains over the window.
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(window, -1, 1);
   const double noise_m2ps2 = accel_noise_m2ps3 * interval_s * static_cast<double>(window - 1) / 15;
-  const double still_m2ps2 = std::pow(kStill * sea.rate_mps, 2) + kNoise * noise_m2ps2;
+  const double still_m2ps2 = std::pow(kStillRate * sea.rate_mps, 2) + kNoise * noise_m2ps2;
   const double moves_m2ps2 = std::pow(kMoves * sea.rate_mps, 2);
   Eigen::ArrayXd variance = Eigen::ArrayXd::Constant(nodes, moves_m2ps2);
   for (Eigen::Index first = 0; first + window <= nodes; ++first) {

@@ -22,6 +22,9 @@ struct Pace {           // of a sea
   double period_s = 0;  // mean period
 };
 
+// Speed about its line of a body at rest, over the sea's heave rate.
+inline constexpr double kStillRate = 0.03;
+
 // speed_mps: int a dt at nodes interval_s apart; accel_noise_m2ps3: two-sided density.
 Rests find_rests(const Eigen::VectorXd& speed_mps, double interval_s, const Pace& sea,
                  double accel_noise_m2ps3);
