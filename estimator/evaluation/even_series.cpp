@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace waverig::evaluation {
 
@@ -31,7 +32,10 @@ std::int64_t median_interval(std::span<const std::int64_t> utime) {
   return *middle;
 }
 
-std::int64_t longest_step(std::span<const std::int64_t> utime) { return 3 * median_interval(utime); }
+std::int64_t longest_step(std::span<const std::int64_t> utime) {
+  constexpr std::int64_t kSteps = 3;
+  return kSteps * std::min(median_interval(utime), std::numeric_limits<std::int64_t>::max() / kSteps);
+}
 
 std::vector<std::vector<double>> even_pieces(std::span<const std::int64_t> utime,
                                              std::span<const double> value) {
