@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,7 +24,7 @@ constexpr int kMostNodesBetween = 8;  // two samples, where a lag is waited for
 // crest, or if no other sea that moves as much as was felt just now goes so far. The sensor was knocked, or
 // its offset changed, which was taken for sea.
 constexpr double kLost = 6;
-constexpr int kNoWave = 60;  // nodes
+constexpr double kLongestCrest_s = 15;
 constexpr double kSlowest_radps = 0.4;
 constexpr double kRethought_s = 60;
 constexpr std::array kSwells = {5e-4, 0.03, 0.5};  // relative variances, of which one is believed
@@ -212,7 +213,9 @@ bool Realtime::lost() {
   const bool unknown = rethinks_ || rise_ || !identifier_.has_spectrum() || filter_.rest_s() > 0;
   const bool beyond = heave_m > kLost * std::sqrt(filter_.model().heave_variance_m2());
   beyond_ = beyond && !unknown ? beyond_ + 1 : 0;
-  return beyond_ > kNoWave ||
+  if (beyond_ > 0) counter_.gap();  // no wave is so high
+  const double crest_s = 3 * std::numbers::pi / filter_.model().mean_frequency_radps;
+  return static_cast<double>(beyond_) * kFineInterval_s > std::min(crest_s, kLongestCrest_s) ||
          (beyond_ > 0 && heave_m > kLost * filter_.recent_mps2() / square(kSlowest_radps));
 }
 
@@ -331,6 +334,7 @@ HeaveFilter Realtime::most_probable(const Calm::Since* calm, const std::vector<H
     }
   }
   swell_ = chosen;
+  identifier_.keep(best->model());
   return *std::move(best);
 }
 
@@ -406,7 +410,7 @@ void Realtime::locate(const AttitudeSample& attitude, Held& held) const {
   held.node = nodes_;
 }
 
-void Realtime::estimate(const Held& held, HeaveSample& out) const {
+void Realtime::estimate(const Held& held, double systematic_m2, HeaveSample& out) const {
   const auto since = static_cast<int>(nodes_ - held.node);  // nodes, the one before the sample the first
   const int ago = std::min(since, filter_.order() - 1);
   const double t = held.since_node_s;
@@ -427,16 +431,19 @@ void Realtime::estimate(const Held& held, HeaveSample& out) const {
     variance = filter_.lagged_variance_m2(ago - 1);
   }
   out.heave_m += jump_m_;
-  out.heave_sigma_m = std::sqrt(variance + square(jump_m_) +
-                                systematic_variance_m2(filter_.model(), path_.motion(), settings_.sensor));
+  // Of that its sea reaches little, as long as it is there and until path and drift begin anew.
+  if (beyond_ > 0) variance += square(out.heave_m);
+  out.heave_sigma_m = std::sqrt(identifier_.doubt() * variance + square(jump_m_) + systematic_m2);
 }
 
 void Realtime::release(std::int64_t until_utime, Output& output) {
   while (!held_.empty() && held_.front().sample.utime <= until_utime) {
     HeaveSample out = held_.front().sample;
-    estimate(held_.front(), out);
+    const double systematic_m2 = systematic_variance_m2(filter_.model(), path_.motion(), settings_.sensor);
+    estimate(held_.front(), systematic_m2, out);
     output.heave(out);
-    if (const auto wave = counter_.add(out, held_.front().tilt_sigma_rad)) output.wave(*wave);
+    if (const auto wave = counter_.add(out, std::sqrt(systematic_m2), held_.front().tilt_sigma_rad))
+      output.wave(*wave);
     held_.pop_front();
   }
 }

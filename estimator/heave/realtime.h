@@ -68,7 +68,7 @@ class Realtime : public Method {
   void rise(const Calm::Since* onset);
   void tell_without_jump(HeaveFilter filter);
   void locate(const AttitudeSample& attitude, Held& held) const;
-  void estimate(const Held& held, HeaveSample& sample) const;
+  void estimate(const Held& held, double systematic_m2, HeaveSample& sample) const;
   void release(std::int64_t until_utime, Output& output);
 
   MethodSettings settings_;

@@ -179,6 +179,7 @@ std::vector<Wave> tell(const Record& record, const SmoothedRecord& smoothed, con
   for (const OffsetChange& change : smoothed.offset_changes) output.offset_change(change);
   std::vector<Wave> waves;
   WaveCounter counter(sensor);
+  const double systematic_m = std::sqrt(systematic_variance_m2(smoothed.sea, smoothed.motion, sensor));
   auto piece = record.pieces().begin();
   for (std::size_t i = 0; i < smoothed.heave.size(); ++i) {
     if (piece != record.pieces().end() && *piece == i) {
@@ -186,7 +187,7 @@ std::vector<Wave> tell(const Record& record, const SmoothedRecord& smoothed, con
       ++piece;
     }
     output.heave(smoothed.heave[i]);
-    if (const auto wave = counter.add(smoothed.heave[i], smoothed.attitude[i].tilt_sigma_rad)) {
+    if (const auto wave = counter.add(smoothed.heave[i], systematic_m, smoothed.attitude[i].tilt_sigma_rad)) {
       output.wave(*wave);
       waves.push_back(*wave);
     }

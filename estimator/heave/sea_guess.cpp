@@ -99,22 +99,25 @@ void SeaGuess::add(double second_difference_m) {
   ++in_a_row_;
 }
 
-Eigen::VectorXd SeaGuess::density_m2s() const {
+SeaGuess::Guess SeaGuess::guess() const {
   const double n = seen_ + kPriorValues;
   const Eigen::ArrayXd size = (errors_ + kPriorValues) / n;
   const Eigen::ArrayXd log_likelihood = -0.5 * (n * size.log() + log_variances_);
   const Eigen::ArrayXd likelihood = (log_likelihood - log_likelihood.maxCoeff()).exp();
   Eigen::VectorXd density = Eigen::VectorXd::Zero(candidates_.front().shape.size());
-  double sum = 0;
+  double sum = 0, weights = 0, mean = 0;
   for (Eigen::Index i = 0; i < likelihood.size(); ++i) {
     if (likelihood[i] < kNegligible) continue;
     const Candidate& c = candidates_[static_cast<std::size_t>(i)];
     const double by_variance = (squares_m2_ / c.variance_m2 + kPriorValues) / n;
     const double weight = c.prior * likelihood[i];  // times the sea's own sum
     density += weight * c.shape;
-    sum += weight / (std::max(size[i], by_variance) * c.sum_m2s);
+    const double sea_m2s = std::max(size[i], by_variance) * c.sum_m2s;
+    sum += weight / sea_m2s;
+    weights += weight;
+    mean += weight * sea_m2s;
   }
-  return density / sum;
+  return {density / sum, mean * sum / (weights * weights)};
 }
 
 }  // namespace waverig::estimator

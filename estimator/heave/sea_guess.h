@@ -24,8 +24,11 @@ class SeaGuess {
   void restart();                        // nothing was seen
   void gap();                            // the next value does not follow on the last
   void add(double second_difference_m);  // the next of the path (node_spectrum.h)
-  // Two-sided, m^2 s. Of nothing seen yet: by the priors alone.
-  Eigen::VectorXd density_m2s() const;
+  struct Guess {
+    Eigen::VectorXd density_m2s;  // two-sided. Of nothing seen yet: by the priors alone
+    double doubt;                 // mean variance of the seas that it may be, over the guess's; at least one
+  };
+  Guess guess() const;
 
  private:
   struct Candidate {

@@ -54,6 +54,7 @@ SeaIdentifier::SeaIdentifier(const SeaIdentifierSettings& settings)
 }
 
 void SeaIdentifier::restart() {
+  model_ = unknown_sea(model_.interval_s, settings_.order, settings_.accel_noise_m2ps3);
   gap();
   guess_.restart();
   guesses_ = true;
@@ -122,7 +123,9 @@ SeaModel SeaIdentifier::slow_sea() const {
 
 const SeaModel& SeaIdentifier::identify(double swell) {
   const double df = 1 / (kDt * settings_.block);
-  SeaAndNoise split{guesses_ ? guess_.density_m2s() : unknown_, settings_.accel_noise_m2ps3, 1};
+  const SeaGuess::Guess first = guesses_ ? guess_.guess() : SeaGuess::Guess{unknown_, 1};
+  doubt_ = weight_ > 0 ? 1 : first.doubt;
+  SeaAndNoise split{first.density_m2s, settings_.accel_noise_m2ps3, 1};
   Eigen::VectorXd& sea = split.heave_density_m2s;
   if (guesses_) {
     const auto end = std::lround(kSwellEnd_hz / df);

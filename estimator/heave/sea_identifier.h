@@ -31,6 +31,7 @@ class SeaIdentifier {
   // By all that was added. swell: variance of a long swell under the guessed sea, relative to it; nothing
   // that is seen at a few nodes tells of it.
   const SeaModel& identify(double swell = 0);
+  double doubt() const { return doubt_; }  // while the sea is guessed: how many times its variance it may have
   void restart();                 // nothing was added
   void gap();                     // the next increment does not follow on the last
   void forget(bool out_of_calm);  // the sea is another one from about now on; out of a calm it is guessed
@@ -57,6 +58,7 @@ class SeaIdentifier {
   bool has_last_ = false;
   Eigen::VectorXd density_;            // of the second differences, two-sided
   double weight_ = 0, lowest_hz_ = 0;  // of the periodograms, and what the last one resolves
+  double doubt_ = 1;
   SeaModel model_;
 };
 

@@ -394,5 +394,37 @@ TEST(Realtime, SurvivesNonsense) {
   EXPECT_LT(rms_over_hm0(out.heaves, record, kSettled, out.heaves.size()), 0.03);
 }
 
+
+// Nothing is told as known in the first seconds, when a slow sea still looks like a small one.
+TEST(Realtime, StatesFromTheFirstSecondsOnThatTheSeaIsNotKnownYet) {
+  for (const auto& [tp_s, hm0_m] : {std::pair{6.0, 1.0}, {8.0, 2.0}, {12.0, 4.0}}) {
+    double ratios = 0, n = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const SeaRecord record = sea_record({.tp_s = tp_s, .hm0_m = hm0_m, .duration_s = 10}, seed);
+      const Collector out = run_realtime(record.samples);
+      for (std::size_t i = 0; i < out.heaves.size(); ++i, ++n)
+        ratios += square((out.heaves[i].heave_m - record.heave_m[i]) / out.heaves[i].heave_sigma_m);
+    }
+    EXPECT_LT(std::sqrt(ratios / n), 1.2) << tp_s << " s";
+  }
+}
+
+// Heave that has run away is no wave, and says that it is not known.
+TEST(Realtime, TellsNoWaveAndNoConfidenceWhereAnOffsetJumped) {
+  for (const double jump_mps2 : {0.02, 0.05, 0.1}) {
+    SeaRecord record = sea_record({.tp_s = 8, .hm0_m = 2, .duration_s = 500}, 51);
+    for (std::size_t i = 30000; i < record.samples.size(); ++i) record.samples[i].f_B.z() += jump_mps2;
+    const Collector out = run_realtime(record.samples);
+    for (const estimator::Wave& wave : out.waves) EXPECT_LT(wave.height_m, 4.5) << jump_mps2;
+    for (std::size_t i = 30000; i < out.heaves.size(); ++i) {
+      const double error_m = std::abs(out.heaves[i].heave_m - record.heave_m[i]);
+      if (error_m > 6) {
+        ASSERT_LT(error_m, 3 * out.heaves[i].heave_sigma_m) << jump_mps2 << " at " << i;
+        ASSERT_TRUE(out.heaves[i].flags & flag::kSettling);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace waverig::testing

@@ -31,7 +31,7 @@ TEST(WaveCounter, StatesWhatCrestAndTroughScatterByAndWhatTheyHaveInCommon) {
   for (int i = 0; i < 1000; ++i) {
     HeaveSample h = sample_at(i);
     if (i == 450) h.flags = flag::kSaturation;
-    if (const auto wave = counter.add(h, 0.01)) waves.push_back(*wave);
+    if (const auto wave = counter.add(h, 0, 0.01)) waves.push_back(*wave);
   }
   ASSERT_EQ(waves.size(), 9u);
   for (const Wave& wave : waves) {
@@ -50,12 +50,70 @@ TEST(WaveCounter, NoWaveReachesOverAGap) {
   int whole = 0;
   for (int i = 0; i < 1000; ++i) {
     if (i == 455) counter.gap();
-    if (const auto wave = counter.add(sample_at(i), 0)) {
+    if (const auto wave = counter.add(sample_at(i), 0, 0)) {
       ++whole;
       EXPECT_FALSE(wave->start_utime < 455 * 50'000 && 455 * 50'000 < wave->start_utime + 5'000'000);
     }
   }
   EXPECT_EQ(whole, 8);
+}
+
+
+// Crests lie between the samples: of five a wave the highest is up to a fifth too low.
+TEST(WaveCounter, FindsCrestAndTroughBetweenSamples) {
+  for (const int samples_a_wave : {8, 12, 20}) {
+    WaveCounter counter({});
+    int whole = 0;
+    for (int i = 0; i < 40 * samples_a_wave; ++i) {
+      const double w = 2 * std::numbers::pi / kPeriod_s, t = 0.0301 + i * kPeriod_s / samples_a_wave;
+      HeaveSample h;
+      h.utime = std::llround(t * 1e6);
+      h.heave_m = 0.5 * kHeight_m * std::sin(w * t);
+      h.heave_rate_mps = 0.5 * kHeight_m * w * std::cos(w * t);
+      h.heave_sigma_m = 0.001;
+      if (const auto wave = counter.add(h, 0, 0)) {
+        ++whole;
+        EXPECT_NEAR(wave->height_m / kHeight_m, 1, samples_a_wave == 8 ? 0.01 : 0.002) << samples_a_wave;
+      }
+    }
+    EXPECT_GT(whole, 35);
+  }
+}
+
+// Else a low sea's mean height and period are those of its higher waves.
+TEST(WaveCounter, CountsTheSmallWavesOfASeaThatIsWellAboveItsNoise) {
+  WaveCounter counter({});
+  int whole = 0;
+  for (int i = 0; i < 4000; ++i) {
+    HeaveSample h = sample_at(i);
+    h.heave_m *= i / 100 % 4 == 3 ? 0.05 : 0.5;  // every fourth wave is a tenth of the others
+    h.heave_sigma_m = 0.04;
+    if (counter.add(h, 0, 0)) ++whole;
+  }
+  EXPECT_GE(whole, 38);  // of 39; the first ones are small
+}
+
+TEST(WaveCounter, MakesNoWavesOfNoise) {
+  WaveCounter counter({});
+  for (int i = 0; i < 4000; ++i) {
+    HeaveSample h = sample_at(i);
+    h.heave_m *= 0.05;
+    h.heave_sigma_m = 0.04;
+    EXPECT_FALSE(counter.add(h, 0, 0));
+  }
+}
+
+// What all waves have in common is told apart from what each has of its own, not in both.
+TEST(WaveCounter, LeavesTheSystematicPartOutOfTheNoise) {
+  WaveCounter counter({});
+  std::vector<Wave> waves;
+  for (int i = 0; i < 1000; ++i) {
+    HeaveSample h = sample_at(i);
+    h.heave_sigma_m = 0.05;
+    if (const auto wave = counter.add(h, 0.04, 0)) waves.push_back(*wave);
+  }
+  ASSERT_FALSE(waves.empty());
+  for (const Wave& wave : waves) EXPECT_NEAR(wave.noise_sigma_m, std::hypot(0.03, 0.03), 1e-12);
 }
 
 }  // namespace
