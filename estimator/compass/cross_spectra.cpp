@@ -45,11 +45,11 @@ std::vector<double> hann_window(std::size_t n) {
   return window;
 }
 
-void soften_ends(std::vector<double>& window, std::size_t bins, bool at_start, bool at_end) {
+void soften_ends(std::vector<double>& window, std::size_t bins) {
   for (std::size_t i = 0; i < bins; ++i) {
     const double s = std::sin(0.25 * kTurn * (static_cast<double>(i) + 0.5) / static_cast<double>(bins));
-    if (at_start) window[i] *= s * s;
-    if (at_end) window[window.size() - 1 - i] *= s * s;
+    window[i] *= s * s;
+    window[window.size() - 1 - i] *= s * s;
   }
 }
 

@@ -8,13 +8,12 @@
 
 namespace waverig::estimator {
 
-// Square sum of four Hann windows of unit mean square, each three quarters overlapped: the same everywhere.
+// Windows of unit mean square, each three quarters overlapped by the next.
 inline constexpr std::size_t kHannSteps = 4;
-inline constexpr double kHannCoverage = kHannSteps;
 std::vector<double> hann_window(std::size_t n);
 
-// Rises over the first and falls over the last bins of a window where the record begins or ends within it.
-void soften_ends(std::vector<double>& window, std::size_t bins, bool at_start, bool at_end);
+// Rises over the first and falls over the last bins of a window.
+void soften_ends(std::vector<double>& window, std::size_t bins);
 
 class RealTransform;
 

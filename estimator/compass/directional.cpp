@@ -12,6 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kHannLobe = 3;  // frequencies to either side of a line that it spreads over
 
 double in_turn(double angle_rad) {
   const double a = std::fmod(angle_rad, kTurn);
@@ -112,7 +113,9 @@ DirectionalBand described(const Band& band, double frequency_Hz) {
 DirectionalSea evaluate(const CrossSpectra& spectra, const DirectionalSettings& settings) {
   DirectionalSea sea;
   const std::vector<Band> bands = displacement_bands(spectra, settings);
-  const auto low = static_cast<std::size_t>(std::ceil(settings.lowest_Hz / spectra.step_Hz()));
+  // Below, what the window leaves of offset and trend of a short record.
+  const double lowest_Hz = std::max(settings.lowest_Hz, kHannLobe * spectra.step_Hz());
+  const auto low = static_cast<std::size_t>(std::ceil(lowest_Hz / spectra.step_Hz()));
   const auto high = static_cast<std::size_t>(settings.highest_Hz / spectra.step_Hz());
   std::size_t peak = 0;
   for (std::size_t k = low; k <= high; ++k) {
@@ -196,37 +199,20 @@ void DirectionalAnalysis::close_bin() {
   bins_.push_back(std::exchange(open_, {}));
   if (bins_.size() > segment_bins_) bins_.pop_front();
   ++closed_;
-  if (closed_ < segment_bins_ || (closed_ - segment_bins_) % (segment_bins_ / kHannSteps) != 0) return;
-  if (closed_ == segment_bins_) analyse_start();
-  analyse(hann_window(segment_bins_));
+  if (ends_a_segment()) analyse(hann_window(segment_bins_));
 }
 
-// The windows that would have begun before the record are missing at its start: one window makes up for them.
-void DirectionalAnalysis::analyse_start() {
-  const std::size_t n = segment_bins_, step = n / kHannSteps;
-  const std::vector<double> regular = hann_window(n);
-  std::vector<double> window(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    double coming = 0;
-    for (std::size_t begin = 0; begin <= i; begin += step) coming += regular[i - begin] * regular[i - begin];
-    window[i] = std::sqrt(std::max(0.0, kHannCoverage - coming));
-  }
-  soften_ends(window, rise(n), true, false);
-  analyse(window);
+bool DirectionalAnalysis::ends_a_segment() const {
+  return closed_ >= segment_bins_ && (closed_ - segment_bins_) % (segment_bins_ / kHannSteps) == 0;
 }
 
-// And at its end; a record without a whole segment is one such window.
+// The last segment ends where the record does; a record without a whole one is one shorter piece. Its window
+// is that of all others: a window of another shape lets short waves leak into long ones, which count by their
+// period to the fourth power.
 void DirectionalAnalysis::analyse_end() {
-  const std::size_t n = bins_.size();
-  if (n < static_cast<std::size_t>(settings_.shortest_segment_s / settings_.bin_s)) return;
-  std::vector<double> window(n);
-  for (std::size_t i = 0; i < n; ++i) window[i] = std::sqrt(std::max(0.0, kHannCoverage - bins_[i].coverage));
-  soften_ends(window, rise(n), closed_ < segment_bins_, true);
-  analyse(window);
-}
-
-std::size_t DirectionalAnalysis::rise(std::size_t bins) const {
-  return std::min(static_cast<std::size_t>(settings_.rise_s / settings_.bin_s), bins / 4);
+  if (bins_.size() < static_cast<std::size_t>(settings_.shortest_segment_s / settings_.bin_s)) return;
+  if (ends_a_segment()) return;
+  analyse(hann_window(bins_.size()));
 }
 
 bool DirectionalAnalysis::usable() const {
@@ -283,7 +269,6 @@ void DirectionalAnalysis::analyse(const std::vector<double>& window) {
   // 3. Cross-spectra.
   if (!s.spectra) s.spectra = std::make_unique<CrossSpectra>(bins, settings_.bin_s);
   s.spectra->add(std::move(up), std::move(to_north), std::move(to_east), window);
-  for (std::size_t i = 0; i < bins; ++i) bins_[i].coverage += window[i] * window[i];
   ++s.segments;
 }
 

@@ -24,7 +24,6 @@ struct DirectionalSettings {
   CompassSettings compass{};       // its declination is added once, at the very end
   double bin_s = 0.2;              // samples are averaged over it; its sinc is taken out of a0
   double segment_s = 102.4;        // of one Fourier transform; three quarters overlapped
-  double rise_s = 20;              // of the taper where the record begins and ends
   double shortest_segment_s = 20;  // a record without a whole segment is analysed in one shorter piece
   double lowest_Hz = 0.03, highest_Hz = 1.0;
   double noise_from_Hz = 1.6;    // above it there are no waves: the noise of each axis is read there
@@ -91,14 +90,12 @@ class DirectionalAnalysis {
     Vector3d m_L = Vector3d::Zero();  // sum while open, mean once closed
     bool seen = false;                // else a gap
     int fields = 0;
-    double coverage = 0;  // sum of the squares of the windows that have seen it
   };
   struct Sums;
   void close_bin();
-  void analyse_start();
+  bool ends_a_segment() const;
   void analyse_end();
   void analyse(const std::vector<double>& window);  // all of bins_
-  std::size_t rise(std::size_t bins) const;
   bool usable() const;
 
   DirectionalSettings settings_;

@@ -28,7 +28,7 @@ TrueDirection true_direction(const TruthSeries& truth, std::int64_t begin_utime,
     if (!std::isfinite(up[i]) || !horizontal_m.allFinite()) return {};
   }
   std::vector<double> window(n, 1.0);
-  estimator::soften_ends(window, std::min(static_cast<std::size_t>(kRise_s / kStep_s), n / 4), true, true);
+  estimator::soften_ends(window, std::min(static_cast<std::size_t>(kRise_s / kStep_s), n / 4));
   estimator::CrossSpectra spectra(n, kStep_s);
   spectra.add(std::move(up), std::move(north), std::move(east), window);
 

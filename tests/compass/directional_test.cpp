@@ -339,5 +339,17 @@ TEST(DirectionalAnalysis, TellsTheSameSpreadAtAnyRateOfSamples) {
   }
 }
 
+
+// Short waves that leak from a window's ends count as long ones do by their period to the fourth power.
+TEST(DirectionalAnalysis, OfARegularWaveHasNoSpreadHoweverLongTheRecord) {
+  for (const double period_s : {2.0, 4.0, 7.0})
+    for (const double duration_s : {60.0, 100.0, 119.8, 120.0, 120.2, 150.0, 300.0}) {
+      const DirectionalSea sea =
+          analysed([&](double t) { return regular_wave(t, period_s, 0.3, 1); }, Presenter{}, duration_s);
+      EXPECT_LT(sea.spread_rad, kDegree) << period_s << " s, " << duration_s << " s";
+      EXPECT_LT(off_deg(sea.mean_direction_rad, 1), 0.5) << period_s << " s, " << duration_s << " s";
+    }
+}
+
 }  // namespace
 }  // namespace waverig::estimator
