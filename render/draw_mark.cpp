@@ -159,22 +159,24 @@ struct Draw {
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t c = 0; c < columns; ++c) {
         const std::size_t i = r * columns + c;
-        if (i >= m.values.size() || !std::isfinite(m.values[i])) continue;
+        if (i >= m.values.size()) continue;
         const Vec2 a = view.at(m.x_edges[c], m.y_edges[r + 1]), b = view.at(m.x_edges[c + 1], m.y_edges[r]);
-        const Color fill = scale.at(m.values[i]);
-        view.painter.fill_rect({std::round(a.x), std::round(a.y), std::round(b.x), std::round(b.y)}, fill);
-        const bool own = i < m.texts.size();
-        const std::string text = own                     ? m.texts[i]
-                                 : numbers.decimals >= 0 ? cell_number(m, m.values[i], numbers.decimals)
-                                                         : "";
-        if (text.empty()) continue;
-        cell_text(text, own ? view.tick_text_px() : numbers.size_px, {a.x, a.y, b.x, b.y},
-                  luminance(fill) < 0.18F ? rgb(0xFFFFFF) : rgb(0x1A1A1A));
+        const bool known = std::isfinite(m.values[i]);
+        const Color fill = known ? scale.at(m.values[i]) : view.colors().panel;
+        if (known)
+          view.painter.fill_rect({std::round(a.x), std::round(a.y), std::round(b.x), std::round(b.y)}, fill);
+        const std::string text = cell_text_of(m, i, numbers.decimals);
+        if (!text.empty())
+          cell_text(text, numbers.decimals >= 0 ? numbers.size_px : view.tick_text_px(), {a.x, a.y, b.x, b.y},
+                    luminance(fill) < 0.18F ? rgb(0xFFFFFF) : rgb(0x1A1A1A));
       }
     }
   }
-  static std::string cell_number(const HeatMap& m, double value, int decimals) {
-    return m.log_colors ? significant_text(value, decimals) : number_text(value, decimals);
+  static std::string cell_text_of(const HeatMap& m, std::size_t i, int decimals) {
+    std::string text;
+    if (decimals >= 0 && std::isfinite(m.values[i]))
+      text = m.log_colors ? significant_text(m.values[i], decimals) : number_text(m.values[i], decimals);
+    return i < m.signs.size() ? text + m.signs[i] : text;
   }
   struct CellNumbers {
     int decimals = -1;  // -1: none has room
@@ -189,31 +191,17 @@ struct Draw {
     for (int decimals = m.decimals; decimals >= 0 && decimals >= fewest; --decimals) {
       for (const float size : {kTickText * view.text_pt, kSmallText * view.text_pt}) {
         float widest = 0;
-        for (const double value : m.values) {
-          if (std::isfinite(value))
-            widest = std::max(widest, view.fonts.width_px(cell_number(m, value, decimals), size));
-        }
+        for (std::size_t i = 0; i < m.values.size(); ++i)
+          widest = std::max(widest, view.fonts.width_px(cell_text_of(m, i, decimals), size));
         if (widest + 0.4F * size < narrowest) return {decimals, size};
       }
     }
     return {};
   }
   void cell_text(const std::string& text, float size, const Rect& cell, Color ink) const {
-    std::vector<std::string> lines;
-    for (std::size_t from = 0; from <= text.size();) {
-      const std::size_t to = std::min(text.find('\n', from), text.size());
-      lines.push_back(text.substr(from, to - from));
-      from = to + 1;
-    }
-    const float middle = 0.5F * (cell.top + cell.bottom), pitch = 1.35F * size;
-    if (pitch * static_cast<float>(lines.size()) > cell.height()) lines.resize(1);
-    float y = middle - 0.5F * pitch * static_cast<float>(lines.size() - 1);
-    for (const std::string& line : lines) {
-      if (view.fonts.width_px(line, size) < cell.width())
-        view.painter.text({0.5F * (cell.left + cell.right), y}, line,
-                          {.size_px = size, .color = ink, .h = HAlign::kCenter, .v = VAlign::kMiddle});
-      y += pitch;
-    }
+    if (view.fonts.width_px(text, size) >= cell.width() || 1.35F * size > cell.height()) return;
+    view.painter.text({0.5F * (cell.left + cell.right), 0.5F * (cell.top + cell.bottom)}, text,
+                      {.size_px = size, .color = ink, .h = HAlign::kCenter, .v = VAlign::kMiddle});
   }
   void operator()(const Rule& m) const {
     const float at = m.vertical ? view.x(m.at) : view.y(m.at);

@@ -117,7 +117,8 @@ struct HeatMap {
   bool color_bar = true;  // false where another panel's bar serves
   int decimals = -1;      // of the number written into each cell, fewer where they do not fit; on logarithmic
                           // colours its significant digits, at least two; -1: none
-  std::vector<std::string> texts{};  // written into the cells instead of the numbers
+  std::vector<std::string>
+      signs{};  // behind the numbers, or alone where a cell has none; a figure explains them
 };
 
 // A straight line right across the panel.

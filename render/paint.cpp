@@ -264,7 +264,7 @@ void prepare_fonts(const Figure& figure, FontBook& fonts) {
       if (const auto* heat = std::get_if<HeatMap>(&mark)) {
         fonts.require(heat->label);
         fonts.require(heat->unit);
-        for (const std::string& text : heat->texts) fonts.require(text);
+        for (const std::string& text : heat->signs) fonts.require(text);
       }
     }
   }

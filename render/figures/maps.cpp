@@ -68,21 +68,31 @@ Figure error_map_figure(const CampaignResults& results) {
   const Grid grid(settings);
   std::vector<Panel> panels;
   double most = 0;
+  bool any_beyond = false;
   for (const std::string& method : methods_of(results)) {
     const auto value = [&](const Setting& s) {
       const CellResult* c = cell_of(results, s, method);
-      return c == nullptr ? kAuto : 100 * (c->statistics.mean_height_m - s.height_m) / s.height_m;
+      return c == nullptr ? kAuto : c->statistics.mean_error_percent;
     };
     for (const Setting& s : settings)
       if (std::isfinite(value(s))) most = std::max(most, std::abs(value(s)));
-    panels.push_back(map_panel(
-        grid, method,
-        {.label = "Error", .unit = "%", .map = ColorMap::kDiverging, .knee = kKnee, .decimals = 2}, value));
+    HeatMap map{.label = "Error", .unit = "%", .map = ColorMap::kDiverging, .knee = kKnee, .decimals = 2};
+    for (const double height_m : grid.heights_m) {
+      for (const double period_s : grid.periods_s) {
+        const CellResult* c = cell_of(results, {period_s, height_m}, method);
+        const bool is_beyond = c != nullptr && is_beyond_uncertainty(c->statistics);
+        map.signs.emplace_back(is_beyond ? "*" : "");
+        any_beyond |= is_beyond;
+      }
+    }
+    panels.push_back(map_panel(grid, method, std::move(map), value));
   }
   return maps_figure(
       "Error of the mean wave height",
-      fmt::format("mean less set height, in percent of the set height; one colour scale for all methods{}",
-                  most > kKnee ? fmt::format(", logarithmic beyond {:g} %", kKnee) : ""),
+      fmt::format(
+          "mean less true height, in percent of the true height; one colour scale for all methods{}{}",
+          most > kKnee ? fmt::format(", logarithmic beyond {:g} %", kKnee) : "",
+          any_beyond ? "\n* further off than the expanded uncertainty (k = 2)" : ""),
       std::move(panels), -most, most, grid);
 }
 

@@ -34,6 +34,10 @@ bool tells_direction_alone(const evaluation::CellResult& cell) {
          !std::isfinite(cell.heave_rmse_m);
 }
 
+bool is_beyond_uncertainty(const evaluation::HeightStatistics& s) {
+  return std::abs(s.mean_height_m - s.mean_true_height_m) > s.expanded_uncertainty_m;
+}
+
 std::vector<std::string> methods_of(const CampaignResults& results) {
   std::vector<std::string> methods;
   for (const CellResult& cell : results.cells) {

@@ -20,6 +20,8 @@ const evaluation::CellResult* cell_of(const evaluation::CampaignResults& results
                                       const std::string& method);
 // A cell that has no place in tables and figures of heights and heave.
 bool tells_direction_alone(const evaluation::CellResult& cell);
+// Whether the mean height is further from the true one than its expanded uncertainty covers.
+bool is_beyond_uncertainty(const evaluation::HeightStatistics& s);
 // Methods as every figure shows them: the palette number of each is its place here.
 std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
 

@@ -26,15 +26,17 @@ Figure table2_figure(const CampaignResults& results) {
   const bool published = shows_published(results);
   Figure figure{.title = published ? "Wave heights: published, and measured on this rig"
                                    : "Wave heights: set, and measured on this rig",
-                .subtitle = (published ? "Lee, Lee, Heo 2014, Table 2, beside campaign \"" : "campaign \"") +
-                            results.name + "\"",
+                .subtitle = published ? "campaign \"" + results.name +
+                                            "\" beside Lee, Lee, Heo 2014, Table 2, which judges by the set "
+                                            "height: what its rig made of that is not known"
+                                      : "campaign \"" + results.name + "\"",
                 .share_x = true,
                 .height_mm = 130};
   Panel top{.title =
-                "(a) Mean less set height, \u00B1 one standard deviation "
+                "(a) Mean less true height, \u00B1 one standard deviation "
                 "of single waves",
             .x = settings_axis(settings, false),
-            .y = {.label = "Mean \u2212 set", .unit = "cm"},
+            .y = {.label = "Mean \u2212 true", .unit = "cm"},
             .legend = Legend::kAbove};
   Panel bottom{.title = "(b) Standard deviation of single waves",
                .x = settings_axis(settings, false),
@@ -46,19 +48,19 @@ Figure table2_figure(const CampaignResults& results) {
   const auto place = [&](std::size_t setting, double index) {
     return static_cast<double>(setting) - 0.4 + (index + 0.5) * step;
   };
-  const auto add = [&](const std::string& name, int color, Marker marker, double index, auto mean_m,
+  const auto add = [&](const std::string& name, int color, Marker marker, double index, auto error_m,
                        auto std_m) {
     const Look look{.color = color, .width_pt = 1.1, .marker = marker, .marker_pt = 5};
     Points points{.name = name, .look = look};
     ErrorBars errors{.look = {.color = color, .width_pt = 1.1, .marker_pt = 5}};
     Points spread{.look = look};
     for (std::size_t i = 0; i < settings.size(); ++i) {
-      const double mean_cm = cm(mean_m(settings[i]) - settings[i].height_m), std_cm = cm(std_m(settings[i]));
-      if (!std::isfinite(mean_cm)) continue;
+      const double error_cm = cm(error_m(settings[i])), std_cm = cm(std_m(settings[i]));
+      if (!std::isfinite(error_cm)) continue;
       points.x.push_back(place(i, index));
-      points.y.push_back(mean_cm);
+      points.y.push_back(error_cm);
       errors.x.push_back(place(i, index));
-      errors.y.push_back(mean_cm);
+      errors.y.push_back(error_cm);
       errors.minus.push_back(std::isfinite(std_cm) ? std_cm : 0);
       errors.plus.push_back(std::isfinite(std_cm) ? std_cm : 0);
       spread.x.push_back(place(i, index));
@@ -73,7 +75,7 @@ Figure table2_figure(const CampaignResults& results) {
       "published", kFaintInk, Marker::kSquare, 0,
       [](const Setting& s) {
         const auto* c = published_cell(s.period_s, s.height_m);
-        return c == nullptr ? kAuto : c->mean_height_m;
+        return c == nullptr ? kAuto : c->mean_height_m - s.height_m;
       },
       [](const Setting& s) {
         const auto* c = published_cell(s.period_s, s.height_m);
@@ -88,7 +90,10 @@ Figure table2_figure(const CampaignResults& results) {
     };
     add(
         methods[m], static_cast<int>(m), kMarkers[m % kMarkers.size()], static_cast<double>(m) + first,
-        [&](const Setting& s) { return of(s, &evaluation::HeightStatistics::mean_height_m); },
+        [&](const Setting& s) {
+          return of(s, &evaluation::HeightStatistics::mean_height_m) -
+                 of(s, &evaluation::HeightStatistics::mean_true_height_m);
+        },
         [&](const Setting& s) { return of(s, &evaluation::HeightStatistics::std_m); });
   }
   // The limit lies below all of a setting's bars: one stroke across them.

@@ -63,9 +63,13 @@ std::string height_answer(const MethodSummary& s) {
     if (without > kMostNamed) where += fmt::format(" and {} more", without - kMostNamed);
   }
   out += fmt::format(
-      "the mean wave height is within {:.2f} % of the set height in {}; single waves scatter by {:.2f} to "
+      "the mean wave height is within {:.2f} % of the true height in {}{}; single waves scatter by {:.2f} to "
       "{:.2f} cm",
-      s.worst_error_percent, where, cm(s.least_std_m), cm(s.largest_std_m));
+      s.worst_error_percent, where,
+      s.beyond_uncertainty > 0 ? fmt::format(", in {} of {} further off than its expanded uncertainty U",
+                                             s.beyond_uncertainty, s.settings - without)
+                               : "",
+      cm(s.least_std_m), cm(s.largest_std_m));
   if (std::isfinite(s.worst_std_over_bound))
     out += fmt::format(", at most {:.2f} times the physical limit", s.worst_std_over_bound);
   return out + ".</li>\n";
@@ -111,25 +115,32 @@ std::string intro(const CampaignResults& results, const std::string& sections) {
   return out + "</ul></nav>\n</header>\n";
 }
 
+HtmlCell signed_cell(HtmlCell cell, const char* sign) {
+  cell.inner += sign;
+  return cell;
+}
+
 std::string results_table(const CampaignResults& results) {
   HtmlTable table(
       "Steady waves of all repeats; lengths in cm. U: expanded "
-      "uncertainty of the mean, k = 2. Limit: "
+      "uncertainty of the mean, k = 2. Error: of the mean against the mean true height; * beyond U. Limit: "
       "Cram\u00E9r\u2013Rao bound of the standard "
       "deviation of a wave by itself. A number leads to the runs behind it.",
-      {"Period s", "Height cm", "Method", "Waves", "Mean", "Error rate %", "U (k\u00A0=\u00A02)", "Std",
+      {"Period s", "Height cm", "Method", "Waves", "Mean", "True", "Error %", "U (k\u00A0=\u00A02)", "Std",
        "Limit", "Std / limit", "RMSE"});
   const SettingColumns set(results.cells);
   for (const CellResult& cell : results.cells) {
     const evaluation::HeightStatistics& s = cell.statistics;
     if (tells_direction_alone(cell)) continue;
     const std::string link = fmt::format("#{}", cell_id(cell));
-    table.add_row({set.period(cell), set.height(cell), text_cell(cell.method),
-                   number_cell(static_cast<double>(s.waves), 0, link),
-                   number_cell(cm(s.mean_height_m), 2, link), number_cell(s.error_rate_percent, 2, link),
-                   number_cell(cm(s.expanded_uncertainty_m), 2, link), number_cell(cm(s.std_m), 2, link),
-                   number_cell(cm(s.bound_std_m), 2), number_cell(s.std_m / s.bound_std_m, 2),
-                   number_cell(cm(s.rmse_m), 2, link)});
+    table.add_row(
+        {set.period(cell), set.height(cell), text_cell(cell.method),
+         number_cell(static_cast<double>(s.waves), 0, link), number_cell(cm(s.mean_height_m), 2, link),
+         number_cell(cm(s.mean_true_height_m), 2, link),
+         signed_cell(number_cell(s.mean_error_percent, 2, link), is_beyond_uncertainty(s) ? "*" : ""),
+         number_cell(cm(s.expanded_uncertainty_m), 2, link), number_cell(cm(s.std_m), 2, link),
+         number_cell(cm(s.bound_std_m), 2), number_cell(s.std_m / s.bound_std_m, 2),
+         number_cell(cm(s.rmse_m), 2, link)});
   }
   return table.html();
 }
@@ -349,7 +360,8 @@ std::vector<MethodSummary> summaries_of(const CampaignResults& results) {
         summary.without_waves.push_back(setting_text(cell));
         continue;
       }
-      summary.worst_error_percent = std::max(summary.worst_error_percent, s.error_rate_percent);
+      summary.worst_error_percent = std::fmax(summary.worst_error_percent, std::abs(s.mean_error_percent));
+      summary.beyond_uncertainty += is_beyond_uncertainty(s);
       summary.least_std_m = std::fmin(summary.least_std_m, s.std_m);  // unknown of a single wave
       summary.largest_std_m = std::fmax(summary.largest_std_m, s.std_m);
       summary.worst_std_over_bound = std::fmax(summary.worst_std_over_bound, s.std_m / s.bound_std_m);

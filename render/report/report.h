@@ -13,7 +13,9 @@ struct MethodSummary {
   std::string method;
   std::size_t settings = 0;
   std::vector<std::string> without_waves;  // settings where it told none
-  double worst_error_percent = 0;          // of the mean height, over the others
+  double worst_error_percent =
+      estimator::kUnknown;             // of the mean height against the true one, over the others
+  std::size_t beyond_uncertainty = 0;  // settings where the mean is off by more than U
   double least_std_m = estimator::kUnknown, largest_std_m = estimator::kUnknown;
   double worst_std_over_bound = estimator::kUnknown;
 };

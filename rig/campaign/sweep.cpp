@@ -154,17 +154,17 @@ std::string direction_table(const evaluation::CampaignResults& results) {
 std::string known(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; }
 
 std::string regular_table(const evaluation::CampaignResults& results) {
-  std::string table =
-      fmt::format("{:>8} {:>9}  {:<12} {:>6} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", "period s", "height cm",
-                  "method", "waves", "mean cm", "error %", "std cm", "bound cm", "U(k=2)", "rmse cm");
+  std::string table = fmt::format("{:>8} {:>9}  {:<12} {:>6} {:>9} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n",
+                                  "period s", "height cm", "method", "waves", "mean cm", "true cm", "error %",
+                                  "std cm", "bound cm", "U(k=2)", "rmse cm");
   for (const auto& cell : results.cells) {
     const auto& s = cell.statistics;
     if (s.waves == 0 && tells_direction(cell)) continue;  // stands in the table of directions
-    table += fmt::format("{:8.1f} {:9.1f}  {:<12} {:6} {:9.2f} {:8.2f} {:8.2f} {:9.2f} {:>8} {:7.2f}\n",
-                         cell.period_s, cell.height_m / kCentimetre, cell.method, s.waves,
-                         s.mean_height_m / kCentimetre, s.error_rate_percent, s.std_m / kCentimetre,
-                         s.bound_std_m / kCentimetre, known(s.expanded_uncertainty_m / kCentimetre),
-                         s.rmse_m / kCentimetre);
+    table += fmt::format(
+        "{:8.1f} {:9.1f}  {:<12} {:6} {:9.2f} {:9.2f} {:8.2f} {:8.2f} {:9.2f} {:>8} {:7.2f}\n", cell.period_s,
+        cell.height_m / kCentimetre, cell.method, s.waves, s.mean_height_m / kCentimetre,
+        s.mean_true_height_m / kCentimetre, s.mean_error_percent, s.std_m / kCentimetre,
+        s.bound_std_m / kCentimetre, known(s.expanded_uncertainty_m / kCentimetre), s.rmse_m / kCentimetre);
   }
   return table;
 }

@@ -71,6 +71,7 @@ CampaignResults example_campaign() {
         s.waves = 20;
         s.mean_height_m = height_m + bias_m;
         s.error_rate_percent = 100 * bias_m / height_m;
+        s.mean_error_percent = 100 * bias_m / height_m;
         s.std_m = sigma_m;
         s.rmse_m = sigma_m;
         s.mean_true_height_m = height_m;
