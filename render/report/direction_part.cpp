@@ -42,7 +42,7 @@ std::string direction_answer(const evaluation::CampaignResults& results) {
         answer.told == answer.settings ? "every setting"
                                        : fmt::format("{} of {} settings", answer.told, answer.settings));
     if (std::isfinite(answer.least_check))
-      out += fmt::format("; the check factor is {:.3f} to {:.3f}", answer.least_check, answer.largest_check);
+      out += fmt::format("; the check factor is {}", range_text(answer.least_check, answer.largest_check, 3));
     out += ".</li>\n";
   }
   return out;

@@ -17,6 +17,7 @@
 #include "render/figures/settings.h"
 #include "render/report/html.h"
 #include "render/report/report_parts.h"
+#include "render/ticks.h"
 
 namespace waverig::render {
 namespace {
@@ -62,14 +63,14 @@ std::string height_answer(const MethodSummary& s) {
     where += "; none were measured at " + joined(named, " or ");
     if (without > kMostNamed) where += fmt::format(" and {} more", without - kMostNamed);
   }
-  out += fmt::format(
-      "the mean wave height is within {:.2f} % of the true height in {}{}; single waves scatter by {:.2f} to "
-      "{:.2f} cm",
-      s.worst_error_percent, where,
-      s.beyond_uncertainty > 0 ? fmt::format(", in {} of {} further off than its expanded uncertainty U",
-                                             s.beyond_uncertainty, s.settings - without)
-                               : "",
-      cm(s.least_std_m), cm(s.largest_std_m));
+  out += fmt::format("the mean wave height is within {:.2f} % of the true height in {}",
+                     s.worst_error_percent, where);
+  if (s.beyond_uncertainty > 0)
+    out += fmt::format(", in {} of {} further off than its expanded uncertainty U", s.beyond_uncertainty,
+                       s.settings - without);
+  if (std::isfinite(s.largest_std_m))  // one wave a setting has no scatter
+    out +=
+        fmt::format("; single waves scatter by {} cm", range_text(cm(s.least_std_m), cm(s.largest_std_m), 2));
   if (std::isfinite(s.worst_std_over_bound))
     out += fmt::format(", at most {:.2f} times the physical limit", s.worst_std_over_bound);
   return out + ".</li>\n";
@@ -344,6 +345,11 @@ std::string reproduce_section(const CampaignResults& results) {
 
 std::string cell_id(const CellResult& cell) {
   return html_id(fmt::format("cell-{:g}s-{:g}cm-{}", cell.period_s, cm(cell.height_m), cell.method));
+}
+
+std::string range_text(double low, double high, int decimals) {
+  const std::string from = number_text(low, decimals), to = number_text(high, decimals);
+  return from == to ? to : from + " to " + to;
 }
 
 std::vector<MethodSummary> summaries_of(const CampaignResults& results) {

@@ -40,6 +40,9 @@ class SettingColumns {
   int period_decimals_ = 0, height_decimals_ = 0;
 };
 
+// "1.00 to 2.00", or the one number that both are.
+std::string range_text(double low, double high, int decimals);
+
 // Before figures whose text is small on a narrow screen.
 inline constexpr const char* kOpensLarge =
     "<p class=\"faint no-print\">Pressed, a figure opens as large as it is.</p>\n";

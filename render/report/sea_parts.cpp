@@ -48,7 +48,7 @@ std::string sea_answer(const CampaignResults& results) {
     if (heave.empty() && hm0.empty()) continue;
     out += fmt::format("<li><strong>{}</strong>: ", html_text(method));
     if (!heave.empty())
-      out += fmt::format("the heave is off by {:.2f} to {:.2f} % of Hm0 (rms)", heave.low, heave.high);
+      out += fmt::format("the heave is off by {} % of Hm0 (rms)", range_text(heave.low, heave.high, 2));
     if (!hm0.empty())
       out += fmt::format("{}Hm0 is within {:.2f} %, Tm02 within {:.2f} % of the true ones",
                          heave.empty() ? "" : "; ", hm0.largest(), tm02.largest());

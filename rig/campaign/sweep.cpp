@@ -131,17 +131,23 @@ std::string shown_direction(double from_rad) {
   return std::isfinite(from_rad) ? fmt::format("{:.2f}", from_rad / kDegree) : "all round";
 }
 
+// Not every method tells it.
+std::string known(double value, int decimals = 2) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+}
+
 // Empty where no method told a direction.
 std::string direction_table(const evaluation::CampaignResults& results) {
   std::string rows;
   for (const auto& cell : results.cells) {
     const auto& sea = cell.sea.sea;
     if (!tells_direction(cell)) continue;
-    rows += fmt::format(
-        "{:8.1f} {:9.1f}  {:<12} {:>13} {:11.2f} {:10.2f} {:10.2f} {:13.2f} {:8.3f} {:11.3f}\n",
-        cell.period_s, cell.height_m / kCentimetre, cell.method, shown_direction(sea.mean_direction_rad),
-        cell.direction_error_rad / kDegree, cell.direction_rmse_rad / kDegree, sea.spread_rad / kDegree,
-        cell.sea.direction.spread_rad / kDegree, sea.check_factor, cell.sea.direction.check_factor);
+    rows += fmt::format("{:8.1f} {:9.1f}  {:<12} {:>13} {:>11} {:>10} {:>10} {:>13} {:>8} {:>11}\n",
+                        cell.period_s, cell.height_m / kCentimetre, cell.method,
+                        shown_direction(sea.mean_direction_rad), known(cell.direction_error_rad / kDegree),
+                        known(cell.direction_rmse_rad / kDegree), known(sea.spread_rad / kDegree),
+                        known(cell.sea.direction.spread_rad / kDegree), known(sea.check_factor, 3),
+                        known(cell.sea.direction.check_factor, 3));
   }
   if (rows.empty()) return rows;
   return fmt::format("\n{:>8} {:>9}  {:<12} {:>13} {:>11} {:>10} {:>10} {:>13} {:>8} {:>11}\n", "period s",
@@ -150,9 +156,6 @@ std::string direction_table(const evaluation::CampaignResults& results) {
          rows;
 }
 
-// Not every method tells it.
-std::string known(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; }
-
 std::string regular_table(const evaluation::CampaignResults& results) {
   std::string table = fmt::format("{:>8} {:>9}  {:<12} {:>6} {:>9} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n",
                                   "period s", "height cm", "method", "waves", "mean cm", "true cm", "error %",
@@ -160,11 +163,12 @@ std::string regular_table(const evaluation::CampaignResults& results) {
   for (const auto& cell : results.cells) {
     const auto& s = cell.statistics;
     if (s.waves == 0 && tells_direction(cell)) continue;  // stands in the table of directions
-    table += fmt::format(
-        "{:8.1f} {:9.1f}  {:<12} {:6} {:9.2f} {:9.2f} {:8.2f} {:8.2f} {:9.2f} {:>8} {:7.2f}\n", cell.period_s,
-        cell.height_m / kCentimetre, cell.method, s.waves, s.mean_height_m / kCentimetre,
-        s.mean_true_height_m / kCentimetre, s.mean_error_percent, s.std_m / kCentimetre,
-        s.bound_std_m / kCentimetre, known(s.expanded_uncertainty_m / kCentimetre), s.rmse_m / kCentimetre);
+    table +=
+        fmt::format("{:8.1f} {:9.1f}  {:<12} {:6} {:>9} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", cell.period_s,
+                    cell.height_m / kCentimetre, cell.method, s.waves, known(s.mean_height_m / kCentimetre),
+                    known(s.mean_true_height_m / kCentimetre), known(s.mean_error_percent),
+                    known(s.std_m / kCentimetre), known(s.bound_std_m / kCentimetre),
+                    known(s.expanded_uncertainty_m / kCentimetre), known(s.rmse_m / kCentimetre));
   }
   return table;
 }
@@ -175,12 +179,13 @@ std::string sea_table(const evaluation::CampaignResults& results) {
                                   "Tp s", "Hm0 cm", "method", "heave rms cm", "% of Hm0", "bound", "gain",
                                   "lag s", "Hm0 error %", "Tm02 error %");
   for (const auto& cell : results.cells) {
-    table += fmt::format("{:5.1f} {:7.1f}  {:<12} {:12.2f} {:12.2f} {:>7} {:9.4f} {:8.3f} {:>12} {:>13}\n",
-                         cell.period_s, cell.height_m / kCentimetre, cell.method,
-                         cell.heave_rmse_m / kCentimetre, 100 * cell.heave_rmse_m / cell.true_hm0_m,
-                         known(100 * cell.heave_bound_m / cell.true_hm0_m), cell.heave_gain, cell.heave_lag_s,
-                         known(percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m)),
-                         known(percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s)));
+    table +=
+        fmt::format("{:5.1f} {:7.1f}  {:<12} {:>12} {:>12} {:>7} {:>9} {:>8} {:>12} {:>13}\n", cell.period_s,
+                    cell.height_m / kCentimetre, cell.method, known(cell.heave_rmse_m / kCentimetre),
+                    known(100 * cell.heave_rmse_m / cell.true_hm0_m),
+                    known(100 * cell.heave_bound_m / cell.true_hm0_m), known(cell.heave_gain, 4),
+                    known(cell.heave_lag_s, 3), known(percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m)),
+                    known(percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s)));
   }
   return table;
 }

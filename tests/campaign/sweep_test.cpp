@@ -129,5 +129,26 @@ TEST(Calibration, FindsTheSimulatedSensorWithinItsStatedUncertainty) {
   EXPECT_GT((truth.M - Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-3) << "there was something to find";
 }
 
+TEST(ResultsTable, ShowsWhatIsNotKnownAsADash) {
+  evaluation::CampaignResults results;
+  evaluation::CellResult cell;
+  cell.period_s = 6;
+  cell.height_m = 1;
+  cell.method = "harmonic";
+  results.cells.push_back(cell);
+  cell.statistics.waves = 1;
+  cell.statistics.mean_height_m = 0.9907;
+  cell.statistics.mean_true_height_m = 1;
+  cell.statistics.mean_error_percent = -0.93;
+  results.cells.push_back(cell);
+  for (const Mover mover : {Mover::kArm, Mover::kSea}) {
+    const std::string table = results_table(results, mover);
+    EXPECT_EQ(table.find("nan"), std::string::npos) << table;
+    EXPECT_NE(table.find(" -\n"), std::string::npos) << table;
+  }
+  EXPECT_NE(results_table(results, Mover::kArm).find("    99.07    100.00    -0.93        -"), std::string::npos)
+      << results_table(results, Mover::kArm);
+}
+
 }  // namespace
 }  // namespace waverig::rig
