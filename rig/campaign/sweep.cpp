@@ -142,12 +142,12 @@ std::string direction_table(const evaluation::CampaignResults& results) {
   for (const auto& cell : results.cells) {
     const auto& sea = cell.sea.sea;
     if (!tells_direction(cell)) continue;
-    rows += fmt::format("{:8.1f} {:9.1f}  {:<12} {:>13} {:>11} {:>10} {:>10} {:>13} {:>8} {:>11}\n",
-                        cell.period_s, cell.height_m / kCentimetre, cell.method,
-                        shown_direction(sea.mean_direction_rad), known(cell.direction_error_rad / kDegree),
-                        known(cell.direction_rmse_rad / kDegree), known(sea.spread_rad / kDegree),
-                        known(cell.sea.direction.spread_rad / kDegree), known(sea.check_factor, 3),
-                        known(cell.sea.direction.check_factor, 3));
+    rows +=
+        fmt::format("{:8g} {:9g}  {:<12} {:>13} {:>11} {:>10} {:>10} {:>13} {:>8} {:>11}\n", cell.period_s,
+                    cell.height_m / kCentimetre, cell.method, shown_direction(sea.mean_direction_rad),
+                    known(cell.direction_error_rad / kDegree), known(cell.direction_rmse_rad / kDegree),
+                    known(sea.spread_rad / kDegree), known(cell.sea.direction.spread_rad / kDegree),
+                    known(sea.check_factor, 3), known(cell.sea.direction.check_factor, 3));
   }
   if (rows.empty()) return rows;
   return fmt::format("\n{:>8} {:>9}  {:<12} {:>13} {:>11} {:>10} {:>10} {:>13} {:>8} {:>11}\n", "period s",
@@ -164,7 +164,7 @@ std::string regular_table(const evaluation::CampaignResults& results) {
     const auto& s = cell.statistics;
     if (s.waves == 0 && tells_direction(cell)) continue;  // stands in the table of directions
     table +=
-        fmt::format("{:8.1f} {:9.1f}  {:<12} {:6} {:>9} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", cell.period_s,
+        fmt::format("{:8g} {:9g}  {:<12} {:6} {:>9} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", cell.period_s,
                     cell.height_m / kCentimetre, cell.method, s.waves, known(s.mean_height_m / kCentimetre),
                     known(s.mean_true_height_m / kCentimetre), known(s.mean_error_percent),
                     known(s.std_m / kCentimetre), known(s.bound_std_m / kCentimetre),
@@ -179,13 +179,12 @@ std::string sea_table(const evaluation::CampaignResults& results) {
                                   "Tp s", "Hm0 cm", "method", "heave rms cm", "% of Hm0", "bound", "gain",
                                   "lag s", "Hm0 error %", "Tm02 error %");
   for (const auto& cell : results.cells) {
-    table +=
-        fmt::format("{:5.1f} {:7.1f}  {:<12} {:>12} {:>12} {:>7} {:>9} {:>8} {:>12} {:>13}\n", cell.period_s,
-                    cell.height_m / kCentimetre, cell.method, known(cell.heave_rmse_m / kCentimetre),
-                    known(100 * cell.heave_rmse_m / cell.true_hm0_m),
-                    known(100 * cell.heave_bound_m / cell.true_hm0_m), known(cell.heave_gain, 4),
-                    known(cell.heave_lag_s, 3), known(percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m)),
-                    known(percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s)));
+    table += fmt::format("{:5g} {:7g}  {:<12} {:>12} {:>12} {:>7} {:>9} {:>8} {:>12} {:>13}\n", cell.period_s,
+                         cell.height_m / kCentimetre, cell.method, known(cell.heave_rmse_m / kCentimetre),
+                         known(100 * cell.heave_rmse_m / cell.true_hm0_m),
+                         known(100 * cell.heave_bound_m / cell.true_hm0_m), known(cell.heave_gain, 4),
+                         known(cell.heave_lag_s, 3), known(percent(cell.sea.sea.hm0_m, cell.sea.true_hm0_m)),
+                         known(percent(cell.sea.sea.tm02_s, cell.sea.true_tm02_s)));
   }
   return table;
 }

@@ -129,7 +129,7 @@ TEST(Calibration, FindsTheSimulatedSensorWithinItsStatedUncertainty) {
   EXPECT_GT((truth.M - Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-3) << "there was something to find";
 }
 
-TEST(ResultsTable, ShowsWhatIsNotKnownAsADash) {
+TEST(ResultsTable, ShowsSettingsInFullAndWhatIsNotKnownAsADash) {
   evaluation::CampaignResults results;
   evaluation::CellResult cell;
   cell.period_s = 6;
@@ -146,6 +146,8 @@ TEST(ResultsTable, ShowsWhatIsNotKnownAsADash) {
     EXPECT_EQ(table.find("nan"), std::string::npos) << table;
     EXPECT_NE(table.find(" -\n"), std::string::npos) << table;
   }
+  results.cells[1].period_s = 6.25;
+  EXPECT_NE(results_table(results, Mover::kArm).find("\n    6.25       100  harmonic"), std::string::npos);
   EXPECT_NE(results_table(results, Mover::kArm).find("    99.07    100.00    -0.93        -"), std::string::npos)
       << results_table(results, Mover::kArm);
 }
