@@ -191,7 +191,7 @@ TEST(Report, ErrorsAreAgainstTheTrueHeightAndMarkedBeyondTheirUncertainty) {
   const HeatMap& map = std::get<HeatMap>(figure.panels.at(0).marks.front());
   EXPECT_EQ(map.values, std::vector<double>(6, -0.5));
   EXPECT_EQ(map.signs, (std::vector<std::string>{"", "", "*", "*", "*", "*"}));
-  EXPECT_NE(figure.subtitle.find("* further off"), std::string::npos);
+  EXPECT_NE(figure.subtitle.find("* beyond the expanded uncertainty"), std::string::npos);
 }
 
 TEST(Report, ASettingWithoutWavesIsNoSuccess) {

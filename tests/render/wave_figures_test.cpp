@@ -113,6 +113,34 @@ TEST(SingleWaves, AreCountedByMethodAndNoneIsLowerThanNothing) {
   for (const PanelPlan& p : planned(figure, fonts).panels) EXPECT_EQ(p.x.low, 0);
 }
 
+TEST(ErrorMap, TellsWhatWasNotRunFromWhatFoundNoWaveAndNamesThinCells) {
+  evaluation::CampaignResults results = test::example_campaign();
+  EXPECT_EQ(error_map_figure(results).panels.front().marks.size(), 1U);
+  std::erase_if(results.cells, [](const auto& c) { return c.period_s == 12 && c.height_m == 1.0; });
+  for (auto& cell : results.cells) {
+    if (cell.method != "harmonic" || cell.period_s != 6) continue;
+    if (cell.height_m == 0.6) cell.statistics = {};
+    if (cell.height_m == 0.8) cell.statistics.waves = 9;
+  }
+  const Figure error = error_map_figure(results), std = std_map_figure(results);
+  for (const Figure* figure : {&error, &std}) {
+    const Panel& panel = figure->panels.at(1);
+    ASSERT_EQ(panel.title, "harmonic");
+    const HeatMap& map = std::get<HeatMap>(panel.marks.at(0));  // row by row, each 6 and 12 s
+    EXPECT_EQ(map.signs, (std::vector<std::string>{"\u2013", "", "\u2020", "", "", ""}));
+    EXPECT_TRUE(std::isnan(map.values[0]));
+    EXPECT_TRUE(std::isnan(map.values[5]));
+    EXPECT_EQ(std::get<Line>(panel.marks.at(1)).x.size(), 3U) << "struck out";
+    EXPECT_NE(figure->subtitle.find("\u2020 fewer than 10 waves; \u2013 "), std::string::npos) << figure->subtitle;
+    EXPECT_NE(figure->subtitle.find("struck out: not run"), std::string::npos);
+  }
+  for (auto& cell : results.cells)
+    if (cell.method == "harmonic") cell.statistics = {};
+  const Figure without = error_map_figure(results);
+  EXPECT_EQ(without.panels.size(), 1U);
+  EXPECT_NE(without.subtitle.find("no wave measured in any setting: harmonic"), std::string::npos) << without.subtitle;
+}
+
 TEST(ErrorMap, OfASingleSettingHasRoomForTheNamesOfItsAxes) {
   evaluation::CampaignResults results = test::example_campaign();
   const auto other = [](const auto& of) {
