@@ -94,18 +94,20 @@ const evaluation::RunResult* paper_run(const evaluation::CampaignResults& result
 
 std::vector<NamedFigure> result_figures(const evaluation::CampaignResults& results) {
   std::vector<NamedFigure> figures;
-  if (results.cells.empty()) return figures;
+  const auto add = [&figures](const char* stem, Figure figure) {
+    if (!figure.panels.empty()) figures.push_back({stem, std::move(figure)});
+  };
   if (are_seas(results)) {
-    figures.push_back({"sea-states", sea_states_figure(results)});
-    figures.push_back({"sea-heave-map", sea_heave_map_figure(results)});
+    add("sea-states", sea_states_figure(results));
+    add("sea-heave-map", sea_heave_map_figure(results));
   } else {
-    figures.push_back({shows_published(results) ? "paper-table-2" : "mean-heights", table2_figure(results)});
-    figures.push_back({"error-map", error_map_figure(results)});
-    figures.push_back({"std-map", std_map_figure(results)});
+    add(shows_published(results) ? "paper-table-2" : "mean-heights", table2_figure(results));
+    add("error-map", error_map_figure(results));
+    add("std-map", std_map_figure(results));
   }
-  figures.push_back({"frequency-response", frequency_response_figure(results)});
-  figures.push_back({"single-waves", single_waves_figure(results)});
-  figures.push_back({"uncertainty-budget", uncertainty_budget_figure(results)});
+  add("frequency-response", frequency_response_figure(results));
+  add("single-waves", single_waves_figure(results));
+  add("uncertainty-budget", uncertainty_budget_figure(results));
   if (auto figure = calibration_figure(results.calibration_json))
     figures.push_back({"calibration", std::move(*figure)});
   if (auto figure = direction_figure(results)) figures.push_back({"directions", std::move(*figure)});

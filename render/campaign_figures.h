@@ -81,7 +81,7 @@ struct NamedFigure {
 // then greatest height, first repeat. nullptr where nothing ran.
 const evaluation::RunResult* paper_run(const evaluation::CampaignResults& results);
 
-// What `results` give without any recording.
+// What `results` give without any recording; a figure that would be empty is left out.
 std::vector<NamedFigure> result_figures(const evaluation::CampaignResults& results);
 // What one recorded run gives; the sensor's noise at rest from its repeats too.
 std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,

@@ -1,4 +1,5 @@
-// Figures of a campaign's results: how well each method measured the waves.
+// Figures of a campaign's results: how well each method measured the waves. One that nothing is known for has
+// no panels.
 #pragma once
 #include "estimator/evaluation/results.h"
 #include "render/figure.h"

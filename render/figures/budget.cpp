@@ -87,9 +87,14 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
       .columns = 1};
   const std::vector<Setting> shown = shown_of(results);
   std::vector<std::vector<Row>> budgets;  // a panel
+  std::string without;
+  bool any_unknown = false;
   for (const std::string& method : methods_of(results)) {
     std::vector<Row> rows = rows_of(results, shown, method);
-    if (rows.empty()) continue;
+    if (rows.empty()) {
+      without += (without.empty() ? "" : ", ") + method;
+      continue;
+    }
     if (const auto same = std::ranges::find(budgets, rows); same != budgets.end()) {
       figure.panels[static_cast<std::size_t>(same - budgets.begin())].title += ", " + method;
       continue;
@@ -110,6 +115,10 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
         bars.at.push_back(static_cast<double>(rows.size() - 1 - r) + 0.4 -
                           (static_cast<double>(i) + 0.5) * step);
         bars.value.push_back(std::isfinite(sigma_mm) ? sigma_mm : 0);  // the legend is of all panels
+        if (std::isfinite(sigma_mm)) continue;
+        panel.marks.emplace_back(Note{
+            .x = 0, .y = bars.at.back() + 0.5 * step, .text = "\u2013", .in_data = true, .color = kFaintInk});
+        any_unknown = true;
       }
       panel.marks.emplace_back(std::move(bars));
     }
@@ -134,6 +143,8 @@ Figure uncertainty_budget_figure(const CampaignResults& results) {
       figure.panels[i].x.high = 1.05 * (figure.share_x ? *most : longest_mm[i]);
     }
   }
+  if (any_unknown) figure.subtitle += "; \u2013 not known";
+  if (!without.empty()) figure.subtitle += "; no budget of " + without;
   figure.height_mm = std::clamp(
       30 + 24 * static_cast<double>(figure.panels.size()) + 6.5 * static_cast<double>(rows), 60.0, 240.0);
   return figure;

@@ -101,6 +101,7 @@ Figure frequency_response_figure(const CampaignResults& results) {
     return any;
   };
   std::string without_phase;
+  bool any = false;
   for (std::size_t m = 0; m < methods.size(); ++m) {
     std::map<double, Spread> gains, phases;
     for (const RunResult& run : results.runs) {
@@ -108,10 +109,12 @@ Figure frequency_response_figure(const CampaignResults& results) {
       gains[run.period_s].add(gain_of(run));
       phases[run.period_s].add(phase_deg(run));
     }
-    add(gain, gains, methods[m], static_cast<int>(m));
-    if (!add(phase, phases, methods[m], static_cast<int>(m)))
-      without_phase += (without_phase.empty() ? "" : ", ") + methods[m];
+    any |= add(gain, gains, methods[m], static_cast<int>(m));
+    const bool has_phase = add(phase, phases, methods[m], static_cast<int>(m));
+    any |= has_phase;
+    if (!has_phase) without_phase += (without_phase.empty() ? "" : ", ") + methods[m];
   }
+  if (!any) return figure;
   if (!without_phase.empty())
     phase.marks.emplace_back(Note{.x = 0.01,
                                   .y = 0.97,

@@ -58,6 +58,7 @@ Figure sea_states_figure(const CampaignResults& results) {
   const auto place = [&](std::size_t setting, std::size_t method) {
     return static_cast<double>(setting) - 0.35 + (static_cast<double>(method) + 0.5) * step;
   };
+  bool any = false;
   std::string without_sea, bound_name = "limit (Wiener)";
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const auto add = [&](Panel& panel, auto value) {
@@ -71,9 +72,9 @@ Figure sea_states_figure(const CampaignResults& results) {
         points.x.push_back(place(i, m));
         points.y.push_back(y);
       }
-      const bool any = !points.x.empty();
-      if (any) panel.marks.emplace_back(std::move(points));
-      return any;
+      if (points.x.empty()) return false;
+      panel.marks.emplace_back(std::move(points));
+      return any = true;
     };
     // Of each method by its own lag: what no other could undercut.
     for (std::size_t i = 0; i < settings.size(); ++i) {
@@ -91,6 +92,7 @@ Figure sea_states_figure(const CampaignResults& results) {
     add(period, [](const CellResult& c) { return 100 * (c.sea.sea.tm02_s / c.sea.true_tm02_s - 1); });
     if (!has_sea) without_sea += (without_sea.empty() ? "" : ", ") + methods[m];
   }
+  if (!any) return figure;
   if (bound_name.empty())
     figure.subtitle += "; limit: the least to be expected, a single record may fall below";
   if (!without_sea.empty()) {

@@ -69,23 +69,21 @@ Figure single_waves_figure(const CampaignResults& results) {
     against.marks.emplace_back(std::move(points));
     residual.marks.emplace_back(std::move(errors));
   }
+  if (counts.empty()) return figure;
   for (Panel* panel : {&against, &residual}) draw_same_once(panel->marks);
-  if (!heights.empty()) {
-    const double room = 0.08 * (heights.high - heights.low) + 1;
-    const double low = std::max(0.0, heights.low - room), high = heights.high + room;
-    if (low == 0) {  // no wave is lower
-      against.x.include_zero = against.y.include_zero = true;
-      if (!slots) residual.x.include_zero = true;
-    }
-    against.marks.emplace_back(Line{.x = {low, high},
-                                    .y = {low, high},
-                                    .name = "equal",
-                                    .look = {.color = kInk, .width_pt = 0.8, .dash = Dash::kDashed}});
+  const double room = 0.08 * (heights.high - heights.low) + 1;
+  const double low = std::max(0.0, heights.low - room), high = heights.high + room;
+  if (low == 0) {  // no wave is lower
+    against.x.include_zero = against.y.include_zero = true;
+    if (!slots) residual.x.include_zero = true;
   }
-  if (!counts.empty())
-    figure.subtitle =
-        fmt::format("{}{:.0f} waves of each method in all runs, ramps left out",
-                    counts.low < counts.high ? fmt::format("{:.0f} to ", counts.low) : "", counts.high);
+  against.marks.emplace_back(Line{.x = {low, high},
+                                  .y = {low, high},
+                                  .name = "equal",
+                                  .look = {.color = kInk, .width_pt = 0.8, .dash = Dash::kDashed}});
+  figure.subtitle =
+      fmt::format("{}{:.0f} waves of each method in all runs, ramps left out",
+                  counts.low < counts.high ? fmt::format("{:.0f} to ", counts.low) : "", counts.high);
   figure.panels = {std::move(against), std::move(residual)};
   return figure;
 }

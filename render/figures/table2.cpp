@@ -66,10 +66,11 @@ Figure table2_figure(const CampaignResults& results) {
       spread.x.push_back(place(i, index));
       spread.y.push_back(std_cm);
     }
-    if (points.x.empty()) return;
+    if (points.x.empty()) return false;
     top.marks.emplace_back(std::move(errors));
     top.marks.emplace_back(std::move(points));
     bottom.marks.emplace_back(std::move(spread));
+    return true;
   };
   add(
       "published", kFaintInk, Marker::kSquare, 0,
@@ -83,12 +84,13 @@ Figure table2_figure(const CampaignResults& results) {
       });
   static constexpr std::array<Marker, 4> kMarkers = {Marker::kCircle, Marker::kDiamond, Marker::kTriangle,
                                                      Marker::kSquare};
+  bool any_measured = false;
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const auto of = [&results, &method = methods[m]](const Setting& s, auto member) {
       const CellResult* c = cell_of(results, s, method);
       return c == nullptr ? kAuto : c->statistics.*member;
     };
-    add(
+    any_measured |= add(
         methods[m], static_cast<int>(m), kMarkers[m % kMarkers.size()], static_cast<double>(m) + first,
         [&](const Setting& s) {
           return of(s, &evaluation::HeightStatistics::mean_height_m) -
@@ -96,6 +98,7 @@ Figure table2_figure(const CampaignResults& results) {
         },
         [&](const Setting& s) { return of(s, &evaluation::HeightStatistics::std_m); });
   }
+  if (!any_measured) return figure;
   // The limit lies below all of a setting's bars: one stroke across them.
   std::string bound_name = "limit (Cram\u00E9r\u2013Rao)";
   for (std::size_t i = 0; i < settings.size(); ++i) {

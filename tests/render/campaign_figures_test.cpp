@@ -142,6 +142,25 @@ TEST(CampaignFigures, LeaveOutWhatWasNotMeasured) {
   }
 }
 
+TEST(CampaignFigures, HaveNothingToShowWhereNoWaveWasFound) {
+  for (evaluation::CampaignResults results : {test::example_campaign(), test::example_sea_campaign()}) {
+    for (evaluation::CellResult& cell : results.cells) {
+      cell.statistics = {};
+      cell.statistics.bound_std_m = 0.01;
+      cell.heave_rmse_m = estimator::kUnknown;
+      cell.sea = {};
+    }
+    for (evaluation::RunResult& run : results.runs) {
+      run.waves.clear();
+      run.seas.clear();
+      run.statistics = {};
+      run.heave_rmse_m = run.heave_gain = estimator::kUnknown;
+    }
+    results.calibration_json.clear();
+    for (const NamedFigure& f : result_figures(results)) ADD_FAILURE() << f.stem << " is empty";
+  }
+}
+
 TEST(CalibrationFigure, SaysWhereTheReportIsNoCalibration) {
   EXPECT_THROW(calibration_figure("{"), UserError);
   EXPECT_THROW(calibration_figure("{\"positions\": [{\"name\": 3}]}"), UserError);
@@ -188,10 +207,18 @@ TEST(CampaignFigures, BudgetsNameEverySettingThatAnyMethodHas) {
   const Figure figure = uncertainty_budget_figure(results);
   ASSERT_EQ(figure.panels.at(0).title, "lee2014");
   std::vector<std::string> named;
+  int unknown = 0;
   for (const Mark& mark : figure.panels[0].marks) {
+    if (const auto* note = std::get_if<Note>(&mark)) {  // not a bar of no uncertainty
+      EXPECT_EQ(note->text, "\u2013");
+      ++unknown;
+      continue;
+    }
     EXPECT_TRUE(extents_of(mark, Scale::kLinear, Scale::kLinear).has_data) << "or the legend leaves it out";
     named.push_back(name_of(mark));
   }
+  EXPECT_EQ(unknown, 9) << "three contributions of three settings";
+  EXPECT_NE(figure.subtitle.find("\u2013 not known"), std::string::npos);
   EXPECT_EQ(named, (std::vector<std::string>{"6 s, 60 cm", "6 s, 100 cm", "12 s, 60 cm", "12 s, 100 cm"}));
 }
 
