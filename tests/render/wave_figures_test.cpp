@@ -69,6 +69,47 @@ TEST(FrequencyResponse, HasNoGainOfATraceThatRanAwayAndNoScatterOfOneRun) {
   }
 }
 
+TEST(FrequencyResponse, ShowsWhereRunsAreMissingAndWeighsTheOthersByTheirWaves) {
+  evaluation::CampaignResults results = test::example_campaign();
+  const auto hollow_of = [](const Figure& figure, std::size_t panel) {
+    for (const Mark& mark : figure.panels.at(panel).marks)
+      if (const auto* points = std::get_if<Points>(&mark); points != nullptr) return points->x;
+    return std::vector<double>{};
+  };
+  EXPECT_TRUE(hollow_of(frequency_response_figure(results), 0).empty());
+  int left = 0;
+  for (auto& run : results.runs) {
+    if (run.method != "harmonic" || run.period_s != 6) continue;
+    run.statistics.mean_height_m = run.statistics.mean_true_height_m;
+    run.heave_lag_s = 0;
+    if (++left == 1) {  // found few waves, far too high
+      run.statistics.waves = 1;
+      run.statistics.mean_height_m *= 1.51;
+    }
+    if (left == 2) {  // found none, and its heave ran away
+      run.statistics = {};
+      run.heave_rmse_m = 20;
+    }
+    if (left == 3) {  // no phase: no gain either, or the two would be of different runs
+      run.statistics.mean_height_m *= 2;
+      run.heave_rmse_m = 20;
+    }
+  }
+  const Figure figure = frequency_response_figure(results);
+  EXPECT_NEAR(line_of(figure.panels.at(0), "harmonic")->y.at(0), 1 + 0.51 / 31, 1e-9) << "three of ten waves, one of one";
+  for (const std::size_t panel : {0U, 1U}) EXPECT_EQ(hollow_of(figure, panel), (std::vector<double>{6}));
+  EXPECT_NE(figure.subtitle.find("hollow: some runs"), std::string::npos);
+}
+
+// On a sea single waves are of many heights: the gain is that of the heave, as in the table.
+TEST(FrequencyResponse, OfSeasIsTheGainOfTheHeave) {
+  evaluation::CampaignResults results = test::example_sea_campaign();
+  for (auto& run : results.runs) run.heave_gain = 0.97;
+  const Figure figure = frequency_response_figure(results);
+  for (const double gain : line_of(figure.panels.at(0), "harmonic")->y) EXPECT_NEAR(gain, 0.97, 1e-9);
+  EXPECT_NE(figure.panels[0].title, frequency_response_figure(test::example_campaign()).panels[0].title);
+}
+
 TEST(FrequencyResponse, SaysWhatIsThere) {
   evaluation::CampaignResults results = test::example_campaign();
   const Figure whole = frequency_response_figure(results);
