@@ -48,6 +48,14 @@ std::vector<std::string> methods_of(const CampaignResults& results) {
   return in_order(std::move(methods));
 }
 
+std::vector<std::string> all_methods_of(const CampaignResults& results) {
+  std::vector<std::string> methods = methods_of(results);
+  for (const CellResult& cell : results.cells)
+    if (std::find(methods.begin(), methods.end(), cell.method) == methods.end())
+      methods.push_back(cell.method);
+  return methods;
+}
+
 double cm(double metres) { return metres / kCentimetre; }
 
 Axis settings_axis(const std::vector<Setting>& settings, bool seas) {

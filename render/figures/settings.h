@@ -22,8 +22,10 @@ const evaluation::CellResult* cell_of(const evaluation::CampaignResults& results
 bool tells_direction_alone(const evaluation::CellResult& cell);
 // Whether the mean height is further from the true one than its expanded uncertainty covers.
 bool is_beyond_uncertainty(const evaluation::HeightStatistics& s);
-// Methods as every figure shows them: the palette number of each is its place here.
+// Methods as every figure of heights and heave shows them: the palette number of each is its place here.
 std::vector<std::string> methods_of(const evaluation::CampaignResults& results);
+// The same, and behind them those that tell directions alone.
+std::vector<std::string> all_methods_of(const evaluation::CampaignResults& results);
 
 // One category each, or where there is no room for their names, a group a period. seas: the heights are Hm0.
 Axis settings_axis(const std::vector<Setting>& settings, bool seas);

@@ -81,7 +81,7 @@ std::string height_answer(const MethodSummary& s) {
 std::string judge_line(const CampaignResults& results) {
   const bool anew = !results.judged_version.empty();
   std::string out =
-      fmt::format("<p>Methods: {}. Judged{} by waverig {}", html_text(joined(methods_of(results))),
+      fmt::format("<p>Methods: {}. Judged{} by waverig {}", html_text(joined(all_methods_of(results))),
                   anew ? " anew" : "", html_text(anew ? results.judged_version : results.version));
   if (anew) out += fmt::format(": <code>{}</code>", html_text(results.judged_command));
   return out + ".</p>\n";

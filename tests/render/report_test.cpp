@@ -85,6 +85,7 @@ TEST(Report, ListsNoSingleWavesOfAMethodThatGivesNone) {
   example.results.cells.push_back(cell);
   example.results.runs.push_back(run);
   const std::string html = example.html();
+  EXPECT_NE(html.find("<p>Methods: lee2014, harmonic, directional. Judged"), std::string::npos);
   EXPECT_EQ(html.find(", directional: 0 waves"), std::string::npos);
   EXPECT_EQ(html.find("Single waves of " + run.run + ", directional"), std::string::npos);
   EXPECT_EQ(html.find("#run-" + run.run + "-directional"), std::string::npos);
