@@ -137,7 +137,8 @@ std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
   figures.push_back({"spectra", spectra_figure(run, noise)});
   RestRecords rest = rest_of(run);
   append(rest, std::move(rest_of_repeats));
-  if (!rest.empty()) figures.push_back({"allan-deviation", allan_figure(rest)});
+  if (!rest.empty())
+    figures.push_back({"allan-deviation", allan_figure(rest, !results.calibration_json.empty())});
   return figures;
 }
 

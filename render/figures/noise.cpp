@@ -11,6 +11,7 @@
 #include "estimator/calibration/allan.h"
 #include "render/figures/methods.h"
 #include "render/figures/run_time.h"
+#include "render/marks.h"
 #include "render/ticks.h"
 
 namespace waverig::render {
@@ -183,16 +184,17 @@ void append(RestRecords& to, RestRecords&& from) {
   for (RestRecord& r : from.angular_rate_radps) to.angular_rate_radps.push_back(std::move(r));
 }
 
-Figure allan_figure(const RestRecords& rest) {
+Figure allan_figure(const RestRecords& rest, bool calibrated) {
   double longest_s = 0;
   for (const RestRecord& r : rest.specific_force_mps2)
     longest_s = std::max(longest_s, r.interval_s * static_cast<double>(r.axes[0].size()));
   Figure figure{
       .title = "Allan deviation of the sensors at rest",
-      .subtitle = fmt::format("calibrated samples, {} record{} of {:.0f} s; bands: one standard deviation; "
-                              "lines: fitted noise, N its one-sided white density, B its bias instability",
-                              rest.specific_force_mps2.size(),
-                              rest.specific_force_mps2.size() == 1 ? "" : "s", longest_s),
+      .subtitle = fmt::format(
+          "samples {}, {} record{} of {:.0f} s; bands: one standard deviation; "
+          "lines: fitted noise, N its one-sided white density, B its bias instability",
+          calibrated ? "calibrated" : "as recorded, without a calibration of the campaign",
+          rest.specific_force_mps2.size(), rest.specific_force_mps2.size() == 1 ? "" : "s", longest_s),
       .columns = 2,
       .height_mm = 100};
   constexpr double kMicroG = kStandardGravity * 1e-6;
@@ -235,10 +237,8 @@ Spectrum welch(std::span<const double> values, double interval_s, std::size_t bl
 }
 
 Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz) {
-  Figure figure{.title = "Spectra of the steady part",
-                .subtitle = setting_text(run) + "; Hann blocks of ten periods, means over 1/12 octave",
-                .columns = 2,
-                .height_mm = 100};
+  Figure figure{.title = "Spectra of the steady part", .columns = 2, .height_mm = 100};
+  Extent blocks;  // in periods; a record that is too short for ten is one block
   const auto spectrum_of = [&](const auto& samples, auto value) {
     constexpr double kBridged = 0.02;  // of a period: a line is within 0.2 % of its amplitude there
     const double interval_s = median_interval_s(samples);
@@ -249,7 +249,10 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
       const bool steady = sample.utime >= run.steady_begin_utime && sample.utime < run.steady_end_utime;
       return steady ? value(sample) : kAuto;
     });
-    return values.size() < 16 ? Spectrum{} : banded(welch(values, interval_s, 2 * in_periods(5)));
+    if (values.size() < 16) return Spectrum{};
+    const std::size_t block = std::min(2 * in_periods(5), values.size());
+    blocks.add(static_cast<double>(block) * interval_s / run.period_s);
+    return banded(welch(values, interval_s, block));
   };
   Panel force{.title = "(a) Specific force",
               .x = {.label = "Frequency", .unit = "Hz", .scale = Scale::kLog},
@@ -291,6 +294,9 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
   draw_same_once(heave.marks);
   heave.y.low = least_density(add("truth", kInk, run.truth, Dash::kDashed));
   force.legend = heave.legend = Legend::kAbove;
+  const std::string least = significant_text(blocks.low, 2), most = significant_text(blocks.high, 2);
+  figure.subtitle = fmt::format("{}; Hann blocks of {} periods, means over 1/12 octave", setting_text(run),
+                                least == most ? most : least + " to " + most);
   figure.panels = {std::move(force), std::move(heave)};
   return figure;
 }

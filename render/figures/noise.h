@@ -27,8 +27,8 @@ RestRecords rest_of(const evaluation::RunRecord& run);
 void append(RestRecords& to, RestRecords&& from);
 
 // Overlapping Allan deviation with the noise terms fitted to it (IEEE Std
-// 952-1997) named in the legend.
-Figure allan_figure(const RestRecords& rest);
+// 952-1997) named in the legend. calibrated: whether a calibration stands behind the samples.
+Figure allan_figure(const RestRecords& rest, bool calibrated);
 
 // One-sided amplitude densities over the steady part: specific force on each
 // axis with the noise floor, and the heave of each method beside the truth, as

@@ -216,14 +216,16 @@ Figure corrected_trace_figure(const evaluation::RunRecord& run, const PaperTrace
   const double mean_m = n > 0 ? sum_m / n : kAuto;
   const double std_m = n > 1 ? std::sqrt(std::max(0.0, (square_m2 - n * mean_m * mean_m) / (n - 1))) : kAuto;
   std::string statistics = "no steady waves";
-  if (n > 1) {
+  if (n > 0) {
     // Of an irregular sea no single height is set that the mean could miss.
     const std::string error =
         sea ? ""
             : fmt::format("error rate {} %, ",
                           percent_text(100 * std::abs(mean_m - run.height_m) / run.height_m));
-    statistics = fmt::format("mean {:.2f} cm, {}standard deviation {:.2f} cm over {:.0f} waves",
-                             mean_m / kCentimetre, error, std_m / kCentimetre, n);
+    statistics = fmt::format("mean {:.2f} cm, {}", mean_m / kCentimetre, error);
+    statistics += n > 1
+                      ? fmt::format("standard deviation {:.2f} cm over {:.0f} waves", std_m / kCentimetre, n)
+                      : "of a single wave";
   }
   const PublishedCell& published = calibrated ? kPublishedCalibrated : kPublishedUncalibrated;
   if (!sea && published_cell(run.period_s, run.height_m) != nullptr && run.period_s == published.period_s &&

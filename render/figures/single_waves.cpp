@@ -81,9 +81,9 @@ Figure single_waves_figure(const CampaignResults& results) {
                                   .y = {low, high},
                                   .name = "equal",
                                   .look = {.color = kInk, .width_pt = 0.8, .dash = Dash::kDashed}});
-  figure.subtitle =
-      fmt::format("{}{:.0f} waves of each method in all runs, ramps left out",
-                  counts.low < counts.high ? fmt::format("{:.0f} to ", counts.low) : "", counts.high);
+  figure.subtitle = fmt::format("{}{:.0f} wave{} of each method in all runs, ramps left out",
+                                counts.low < counts.high ? fmt::format("{:.0f} to ", counts.low) : "",
+                                counts.high, counts.high > 1 ? "s" : "");
   figure.panels = {std::move(against), std::move(residual)};
   return figure;
 }

@@ -81,5 +81,16 @@ TEST(Spectra, AreOfTheHeaveAsFarAsItIsKnown) {
   EXPECT_EQ(notes, "no steady heave: harmonic");
 }
 
+// A short record has no ten periods; samples of a campaign without a calibration are not calibrated.
+TEST(Spectra, SayWhatTheirBlocksAreAndAllanDeviationsOfWhat) {
+  EXPECT_NE(spectra_figure(test::example_run(12, 1.0, 240), kAuto).subtitle.find("blocks of 10 periods"),
+            std::string::npos);
+  const std::string brief = spectra_figure(test::example_run(12, 1.0, 48), kAuto).subtitle;
+  EXPECT_NE(brief.find("blocks of 4.0 periods"), std::string::npos) << brief;
+  const RestRecords rest = rest_of(test::example_run());
+  EXPECT_EQ(allan_figure(rest, true).subtitle.find("samples calibrated"), 0U);
+  EXPECT_EQ(allan_figure(rest, false).subtitle.find("samples as recorded"), 0U);
+}
+
 }  // namespace
 }  // namespace waverig::render

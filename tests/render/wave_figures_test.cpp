@@ -48,6 +48,15 @@ TEST(PaperFigures, SayWhereTheyDoNotShowTheWholeRecord) {
       << subtitle_of(longer);
 }
 
+TEST(PaperFigures, TellTheMeanOfASingleWaveWithoutAScatter) {
+  evaluation::RunRecord run = test::example_run();
+  run.waves["harmonic"].resize(1);
+  const std::string subtitle = corrected_trace_figure(run, recorded_traces(run, "harmonic"), true).subtitle;
+  EXPECT_NE(subtitle.find("of a single wave"), std::string::npos) << subtitle;
+  EXPECT_EQ(subtitle.find("no steady waves"), std::string::npos) << subtitle;
+  EXPECT_EQ(subtitle.find("nan"), std::string::npos) << subtitle;
+}
+
 TEST(FrequencyResponse, HasNoGainOfATraceThatRanAwayAndNoScatterOfOneRun) {
   evaluation::CampaignResults results = test::example_campaign();
   std::erase_if(results.runs, [](const auto& r) { return r.repeat > 0 || r.height_m != 0.6; });
@@ -138,6 +147,10 @@ TEST(FrequencyResponse, SaysWhatIsThere) {
 TEST(SingleWaves, AreCountedByMethodAndNoneIsLowerThanNothing) {
   evaluation::CampaignResults results = test::example_campaign();
   EXPECT_TRUE(single_waves_figure(results).subtitle.starts_with("120 waves of each method"));
+  evaluation::CampaignResults one = results;
+  one.runs.resize(1);
+  one.runs[0].waves.resize(1);
+  EXPECT_TRUE(single_waves_figure(one).subtitle.starts_with("1 wave of each method"));
   results.runs.front().waves.pop_back();
   EXPECT_TRUE(single_waves_figure(results).subtitle.starts_with("119 to 120 waves of each method"));
   evaluation::CampaignResults seas = test::example_sea_campaign();
