@@ -118,6 +118,7 @@ std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
                                      const evaluation::RunRecord& run, const FigureOptions& options,
                                      RestRecords rest_of_repeats) {
   std::vector<NamedFigure> figures;
+  const std::vector<std::string> methods = all_methods_of(results);
   const PaperTraces calibrated = recorded_traces(run, kBaselineMethod);
   const PaperTraces raw = options.uncalibrated ? options.uncalibrated(run) : PaperTraces{};
   const PaperTraces& shown = raw.empty() ? calibrated : raw;
@@ -129,12 +130,12 @@ std::vector<NamedFigure> run_figures(const evaluation::CampaignResults& results,
     figures.push_back({"paper-6-without-calibration", corrected_trace_figure(run, raw, false)});
   if (!calibrated.heave.empty())
     figures.push_back({"paper-7-with-calibration", corrected_trace_figure(run, calibrated, true)});
-  if (is_on_sea(run)) figures.push_back({"sea-trace", sea_trace_figure(run)});
+  if (is_on_sea(run)) figures.push_back({"sea-trace", sea_trace_figure(run, methods)});
   double noise = kAuto;
   for (const evaluation::RunResult& result : results.runs) {
     if (result.run == run.run) noise = result.noise_density_mps2_rthz;
   }
-  figures.push_back({"spectra", spectra_figure(run, noise)});
+  figures.push_back({"spectra", spectra_figure(run, noise, methods)});
   RestRecords rest = rest_of(run);
   append(rest, std::move(rest_of_repeats));
   if (!rest.empty())
@@ -180,7 +181,8 @@ std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::Campa
   std::vector<Task> tasks = tasks_of(figures, out, options);
 
   std::optional<RigMotion> motion;
-  if (!run.truth.empty()) motion.emplace(run, "");
+  if (const std::string shown = nearest_method(run); !run.truth.empty())
+    motion.emplace(run, shown, method_color(all_methods_of(results), shown));
   if (motion) {
     tasks.insert(tasks.begin(),
                  {out / (motion->on_sea() ? "buoy.png" : "rig.png"),

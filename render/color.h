@@ -1,6 +1,7 @@
 // Colours: palette, themes and colour maps that colour-blind readers can tell
 // apart.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 namespace waverig::render {
@@ -31,6 +32,8 @@ const ThemeColors& theme_colors(Theme theme);
 // lightened on the dark theme.
 Color palette(Theme theme, int index);
 inline constexpr int kPaletteSize = 7;
+// The number in the palette of what belongs to the body's axis x, y or z, in every figure.
+constexpr int axis_color(std::size_t axis) { return static_cast<int>(axis); }
 
 enum class ColorMap { kSequential, kDiverging };
 // share 0 to 1. Sequential: cividis (Nunez et al. 2018). Diverging: blue to

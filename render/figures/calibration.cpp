@@ -38,7 +38,7 @@ Panel residual_panel(const json& positions) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     bars[axis].name = fmt::format("f {}", kAxes[axis]);
     bars[axis].width = 0.25;
-    bars[axis].look.color = static_cast<int>(axis);
+    bars[axis].look.color = axis_color(axis);
   }
   for (const json& position : positions) {
     const auto at = static_cast<double>(panel.x.categories.size());

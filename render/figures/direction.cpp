@@ -7,7 +7,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
+#include "render/figures/methods.h"
+#include "render/figures/settings.h"
 #include "render/ticks.h"
 
 namespace waverig::render {
@@ -92,8 +95,10 @@ std::optional<Figure> direction_figure(const evaluation::CampaignResults& result
   Panel error{
       .title = "Error of the direction", .x = period, .y = {.label = "Told \u2212 true", .unit = "°"}};
   Panel spread{.title = "Spread", .x = period, .y = {.label = "Spread", .unit = "°", .low = 0}};
-  int color = 0;
+  const std::vector<std::string> methods = all_methods_of(results);
+  std::string truth_name = "truth";
   for (const auto& [method, seas] : by_method) {
+    const int color = method_color(methods, method);
     error.marks.emplace_back(Points{.x = seas.period_s,
                                     .y = seas.error_deg,
                                     .name = method,
@@ -104,9 +109,8 @@ std::optional<Figure> direction_figure(const evaluation::CampaignResults& result
                                      .look = {.color = color, .marker = Marker::kCircle}});
     spread.marks.emplace_back(Points{.x = seas.period_s,
                                      .y = seas.true_spread_deg,
-                                     .name = color == 0 ? "truth" : "",
+                                     .name = std::exchange(truth_name, ""),
                                      .look = {.color = kInk, .marker = Marker::kHollowCircle}});
-    ++color;
   }
   error.marks.emplace_back(Rule{.at = 2, .name = "limits of CDIP"});
   error.marks.emplace_back(Rule{.at = -2});

@@ -16,6 +16,12 @@ inline std::vector<std::string> in_order(std::vector<std::string> methods) {
   return methods;
 }
 
+// The number of a method in the palette: its place among those of the campaign, so that it is the same in
+// every figure; of methods that are not among them the next.
+inline int method_color(const std::vector<std::string>& methods, const std::string& method) {
+  return static_cast<int>(std::ranges::find(methods, method) - methods.begin());
+}
+
 // Methods that tell the very same, as two that publish one heave do, are drawn once and named together: the
 // later would cover the earlier.
 void draw_same_once(std::vector<Mark>& marks);

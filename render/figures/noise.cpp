@@ -65,7 +65,7 @@ Panel allan_panel(const std::vector<RestRecord>& records, const Quantity& q) {
               .y = {.label = "Allan deviation", .unit = q.unit, .scale = Scale::kLog},
               .legend = Legend::kFree};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int color = static_cast<int>(axis);
+    const int color = axis_color(axis);
     const std::vector<estimator::AllanPoint> points = pooled(records, axis);
     const estimator::AllanTerms terms = estimator::fit_allan(points);
     Points measured{.look = {.color = color, .marker = Marker::kCircle, .marker_pt = 3.5}};
@@ -236,7 +236,8 @@ Spectrum welch(std::span<const double> values, double interval_s, std::size_t bl
   return out;
 }
 
-Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz) {
+Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz,
+                      const std::vector<std::string>& methods) {
   Figure figure{.title = "Spectra of the steady part", .columns = 2, .height_mm = 100};
   Extent blocks;  // in periods; a record that is too short for ten is one block
   const auto spectrum_of = [&](const auto& samples, auto value) {
@@ -263,7 +264,7 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
     force.marks.emplace_back(Line{.x = s.frequency_hz,
                                   .y = s.density_rthz,
                                   .name = fmt::format("f {}", kAxisNames[axis]),
-                                  .look = {.color = static_cast<int>(axis), .width_pt = 0.8}});
+                                  .look = {.color = axis_color(axis), .width_pt = 0.8}});
   }
   if (noise_density_mps2_rthz > 0)
     force.marks.emplace_back(Rule{.at = noise_density_mps2_rthz,
@@ -280,12 +281,9 @@ Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps
                                   .look = {.color = color, .width_pt = 0.9, .dash = dash}});
     return s.density_rthz;
   };
-  std::vector<std::string> methods;
-  for (const auto& [method, samples] : run.heave) methods.push_back(method);
-  int color = 0;
   std::string without;
-  for (const std::string& method : in_order(methods)) {
-    if (add(method, color++, run.heave.at(method), Dash::kSolid).empty())
+  for (const std::string& method : heave_methods_of(run)) {
+    if (add(method, method_color(methods, method), run.heave.at(method), Dash::kSolid).empty())
       without += (without.empty() ? "" : ", ") + method;
   }
   if (!without.empty())

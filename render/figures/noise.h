@@ -33,8 +33,10 @@ Figure allan_figure(const RestRecords& rest, bool calibrated);
 // One-sided amplitude densities over the steady part: specific force on each
 // axis with the noise floor, and the heave of each method beside the truth, as
 // far as it is known without a break.
-// noise_density: of the vertical acceleration, NaN where unknown.
-Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz);
+// noise_density: of the vertical acceleration, NaN where unknown. methods: of the campaign, for their
+// colours.
+Figure spectra_figure(const evaluation::RunRecord& run, double noise_density_mps2_rthz,
+                      const std::vector<std::string>& methods);
 
 // Welch: half-overlapping Hann blocks, mean removed from each. Returns
 // amplitude density against frequency, without 0 Hz.

@@ -146,11 +146,11 @@ Figure inertial_data_figure(const evaluation::RunRecord& run, const PaperTraces&
     panel.marks.emplace_back(Line{.x = x, .y = std::move(y), .look = {.color = color, .width_pt = 0.7}});
     figure.panels.push_back(std::move(panel));
   };
-  add("(a) Roll", "Roll", "\u00B0", attitude_s, std::move(roll_deg), 0);
-  add("(b) Pitch", "Pitch", "\u00B0", attitude_s, std::move(pitch_deg), 0);
-  add("(c) Specific force f, x (forward)", "f", "m/s\u00B2", sample_s, std::move(f_B[0]), 1);
-  add("(d) Specific force f, y (right)", "f", "m/s\u00B2", sample_s, std::move(f_B[1]), 1);
-  add("(e) Specific force f, z (down)", "f", "m/s\u00B2", sample_s, std::move(f_B[2]), 1);
+  add("(a) Roll", "Roll", "\u00B0", attitude_s, std::move(roll_deg), axis_color(0));  // roll turns about x
+  add("(b) Pitch", "Pitch", "\u00B0", attitude_s, std::move(pitch_deg), axis_color(1));
+  add("(c) Specific force f, x (forward)", "f", "m/s\u00B2", sample_s, std::move(f_B[0]), axis_color(0));
+  add("(d) Specific force f, y (right)", "f", "m/s\u00B2", sample_s, std::move(f_B[1]), axis_color(1));
+  add("(e) Specific force f, z (down)", "f", "m/s\u00B2", sample_s, std::move(f_B[2]), axis_color(2));
   return figure;
 }
 

@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "estimator/evaluation/run_record.h"
+#include "render/figures/methods.h"
 
 namespace waverig::render {
 
@@ -16,6 +19,13 @@ inline double since_start_s(const evaluation::RunRecord& run, std::int64_t utime
 // A buoy on an irregular sea instead of the rig's arm: the set period and height are Tp and Hm0.
 inline bool is_on_sea(const evaluation::RunRecord& run) {
   return !run.truth.empty() && !std::isfinite(run.truth.front().arm_angle_rad);
+}
+
+// Whose heave was recorded, in the order of the figures.
+inline std::vector<std::string> heave_methods_of(const evaluation::RunRecord& run) {
+  std::vector<std::string> methods;
+  for (const auto& [method, samples] : run.heave) methods.push_back(method);
+  return in_order(std::move(methods));
 }
 
 inline std::string setting_text(const evaluation::RunRecord& run) {

@@ -104,7 +104,7 @@ Figure sea_states_figure(const CampaignResults& results) {
   return figure;
 }
 
-Figure sea_trace_figure(const evaluation::RunRecord& run) {
+Figure sea_trace_figure(const evaluation::RunRecord& run, const std::vector<std::string>& methods) {
   constexpr double kShownPeriods = 12;
   const double begin_s = since_start_s(run, run.steady_begin_utime),
                end_s = since_start_s(run, run.steady_end_utime);
@@ -121,10 +121,8 @@ Figure sea_trace_figure(const evaluation::RunRecord& run) {
       .y = {.label = "Error", .unit = "cm"},
       .legend = Legend::kNone};
   const auto is_shown = [&](double t) { return t >= from_s && t <= to_s; };
-  std::vector<std::string> methods;
-  for (const auto& [method, samples] : run.heave) methods.push_back(method);
-  int color = 0;
-  for (const std::string& method : in_order(methods)) {
+  for (const std::string& method : heave_methods_of(run)) {
+    const int color = method_color(methods, method);
     Line shown{.name = method, .look = {.color = color, .width_pt = 1.1}},
         off{.look = {.color = color, .width_pt = 0.8}};
     double sum_cm = 0;
@@ -139,7 +137,6 @@ Figure sea_trace_figure(const evaluation::RunRecord& run) {
       shown.x.push_back(t);
       shown.y.push_back(cm(sample.heave_m));
     }
-    ++color;
     if (off.x.empty()) continue;
     const double mean_cm = sum_cm / static_cast<double>(off.x.size());
     for (double& y : off.y) y -= mean_cm;

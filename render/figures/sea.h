@@ -14,6 +14,7 @@ Figure sea_heave_map_figure(const evaluation::CampaignResults& results);
 
 // One run: true heave and that of each method for some waves, and below the error over the whole steady part,
 // each method's mean removed.
-Figure sea_trace_figure(const evaluation::RunRecord& run);
+// methods: of the campaign, for their colours.
+Figure sea_trace_figure(const evaluation::RunRecord& run, const std::vector<std::string>& methods);
 
 }  // namespace waverig::render

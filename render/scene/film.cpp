@@ -83,7 +83,7 @@ Figure FilmFrames::traces(double time_s) const {
     Line estimate = line_of(*heave, start, from_s, time_s, [](const auto& s) { return 100 * s.heave_m; });
     const double offset = 100 * motion_.heave_offset_m();
     for (double& y : estimate.y) y -= offset;
-    add(heave_panel, std::move(estimate), 1, 1.3, Dash::kDashed);
+    add(heave_panel, std::move(estimate), motion_.color(), 1.3, Dash::kDashed);
   }
   Panel tilt_panel = panel("Pitch: truth, and estimate", "\u00B0", kAuto, kAuto);
   const auto pitch_deg = [](const Quaterniond& q) { return euler_of(q).pitch_rad / kDegree; };
@@ -91,7 +91,7 @@ Figure FilmFrames::traces(double time_s) const {
       kInk, 1.6);
   if (heave != nullptr)
     add(tilt_panel, line_of(*heave, start, from_s, time_s, [&](const auto& s) { return pitch_deg(s.q_NB); }),
-        1, 1.3, Dash::kDashed);
+        motion_.color(), 1.3, Dash::kDashed);
   // Tilt is small beside noise: the axis keeps still.
   double largest_deg = 1;
   for (const evaluation::TruthSample& s : run.truth)
@@ -111,8 +111,8 @@ Figure FilmFrames::traces(double time_s) const {
       line_of(run.imu, start, from_s, time_s, [](const auto& s) { return s.f_B.z() + kStandardGravity; });
   forward.name = "x (forward)";
   down.name = "z (down) + g";
-  add(force_panel, std::move(forward), 2, 0.8);
-  add(force_panel, std::move(down), 0, 0.8);
+  add(force_panel, std::move(forward), axis_color(0), 0.8);
+  add(force_panel, std::move(down), axis_color(2), 0.8);
   figure.panels = {std::move(heave_panel), std::move(tilt_panel), std::move(force_panel)};
   return figure;
 }

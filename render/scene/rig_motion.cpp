@@ -68,8 +68,8 @@ std::string nearest_method(const evaluation::RunRecord& run) {
   return best;
 }
 
-RigMotion::RigMotion(const evaluation::RunRecord& run, const std::string& method)
-    : run_(run), method_(method), on_sea_(is_on_sea(run)) {
+RigMotion::RigMotion(const evaluation::RunRecord& run, const std::string& method, int color)
+    : run_(run), method_(method), color_(color), on_sea_(is_on_sea(run)) {
   if (run.truth.empty())
     throw UserError("run " + run.run + ": it holds no truth of the rig, so there is nothing to show");
   if (method_.empty()) method_ = nearest_method(run);

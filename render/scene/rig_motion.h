@@ -20,12 +20,13 @@ struct RigInstant {
 
 class RigMotion {
  public:
-  // method: whose heave is shown; empty: the one nearest to the truth. Throws
-  // UserError where the run has no truth or no such method.
-  RigMotion(const evaluation::RunRecord& run, const std::string& method);
+  // method: whose heave is shown; empty: the one nearest to the truth. color: its number in the palette, that
+  // of the campaign's figures. Throws UserError where the run has no truth or no such method.
+  RigMotion(const evaluation::RunRecord& run, const std::string& method, int color = 1);
 
   RigInstant at(double time_s) const;
   const std::string& method() const { return method_; }  // empty where no estimate was recorded
+  int color() const { return color_; }
   const evaluation::RunRecord& run() const { return run_; }
   double heave_offset_m() const { return mean_heave_m_; }  // of the estimate from the truth: it is taken off
   double radius_m() const { return radius_m_; }            // of the arm; on a sea the largest heave
@@ -39,6 +40,7 @@ class RigMotion {
 
   const evaluation::RunRecord& run_;
   std::string method_;
+  int color_;
   const std::vector<estimator::HeaveSample>* heave_ = nullptr;
   double mean_heave_m_ = 0;  // of the estimate over the steady part, less that of the truth
   double azimuth_rad_ = 0;

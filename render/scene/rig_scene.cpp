@@ -209,7 +209,7 @@ void RigScene::draw_labels(const RigMotion& motion, const RigInstant& at, const 
     const double r = motion.radius_m(), low = -r, high = r, gap = 0.08 * (r + 0.3);
     double x = 1.55 * (r + 0.3);
     while (x > 1.1 * r && on_page({x + gap, 0, high}).x + 4.5F * text_px > area.right) x *= 0.97;
-    const Color truth = colors.ink, estimate = palette(settings_.theme, 1);
+    const Color truth = colors.ink, estimate = palette(settings_.theme, motion.color());
     const auto line = [&](const Vector3d& a, const Vector3d& b, Color color, float width) {
       painter.stroke(std::array{on_page(a), on_page(b)}, color, width);
     };

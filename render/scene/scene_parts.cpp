@@ -83,7 +83,7 @@ void SceneParts::build_buoy(const RigMotion& motion, const RigInstant& at) {
   add_floor(reach, floor_z);
   if (at.estimated) {
     const Vector3d shift(0, 0, at.estimated_heave_m - at.sensor_m.z());
-    const Color ghost = with_alpha(palette(theme_, 1), 0.30F);
+    const Color ghost = with_alpha(palette(theme_, motion.color()), 0.30F);
     add_hull(clear, gondola_pose(at.sensor_m + shift, at.estimated_q_SB), 1.08, ghost, ghost);
   }
   constexpr std::size_t kColumns = 160, kRows = 12;
@@ -151,7 +151,7 @@ void SceneParts::build_rig(const RigMotion& motion, const RigInstant& at) {
     const Vector3d shift(0, 0, at.estimated_heave_m - at.sensor_m.z());
     const Isometry3d believed = gondola_pose(pivot + shift, at.estimated_q_SB);
     clear.add_box(in_gondola(believed, body), {kGondolaWidth * 1.08, 0.175, kGondolaHeight * 1.08},
-                  with_alpha(palette(theme_, 1), 0.30F));
+                  with_alpha(palette(theme_, motion.color()), 0.30F));
   }
 
   // 5. The floor.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "lcmtypes/error.h"
 #include "render/figures/accuracy.h"
@@ -169,6 +171,29 @@ TEST(CalibrationFigure, SaysWhereTheReportIsNoCalibration) {
 
 TEST(Methods, BaselineComesFirst) {
   EXPECT_EQ(in_order({"a", "lee2014", "b"}), (std::vector<std::string>{"lee2014", "a", "b"}));
+}
+
+// A program judged beside the campaign's methods has no heave in the recordings: the others keep their colours.
+TEST(CampaignFigures, GiveAMethodOneColour) {
+  evaluation::CampaignResults results = test::example_sea_campaign();
+  const auto add_other = [](auto& list) {
+    auto others = list;
+    for (auto& other : others) other.method = "another";
+    others.insert(others.end(), list.begin(), list.end());
+    list = others;
+  };
+  add_other(results.cells);
+  add_other(results.runs);
+  std::map<std::string, std::set<int>> colors;
+  for (const NamedFigure& f : figures_of(results, test::example_sea_run()))
+    for (const Panel& panel : f.figure.panels)
+      for (const Mark& mark : panel.marks) {
+        if (const auto* line = std::get_if<Line>(&mark)) colors[line->name].insert(line->look.color);
+        if (const auto* points = std::get_if<Points>(&mark)) colors[points->name].insert(points->look.color);
+      }
+  EXPECT_EQ(colors["lee2014"], (std::set<int>{0}));
+  EXPECT_EQ(colors["another"], (std::set<int>{1}));
+  EXPECT_EQ(colors["harmonic"], (std::set<int>{2}));
 }
 
 TEST(CampaignFigures, BudgetsShareAScaleOnlyWhereBothCanBeRead) {

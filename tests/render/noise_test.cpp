@@ -58,7 +58,7 @@ TEST(Rest, EndsAtAGap) {
 TEST(Spectra, AreOfTheHeaveAsFarAsItIsKnown) {
   evaluation::RunRecord run = test::example_run(12, 1.0, 240);
   const auto line_of = [&](const std::string& name) {
-    const Figure figure = spectra_figure(run, kAuto);
+    const Figure figure = spectra_figure(run, kAuto, {});
     for (const Mark& mark : figure.panels.at(1).marks)
       if (const auto* line = std::get_if<Line>(&mark); line != nullptr && line->name == name) return *line;
     return Line{};
@@ -75,7 +75,7 @@ TEST(Spectra, AreOfTheHeaveAsFarAsItIsKnown) {
   // Where nothing is known of the steady part, the figure says so.
   for (auto& sample : heave) sample.heave_m = estimator::kUnknown;
   std::string notes;
-  const Figure figure = spectra_figure(run, kAuto);
+  const Figure figure = spectra_figure(run, kAuto, {});
   for (const Mark& mark : figure.panels.at(1).marks)
     if (const auto* note = std::get_if<Note>(&mark)) notes += note->text;
   EXPECT_EQ(notes, "no steady heave: harmonic");
@@ -83,9 +83,9 @@ TEST(Spectra, AreOfTheHeaveAsFarAsItIsKnown) {
 
 // A short record has no ten periods; samples of a campaign without a calibration are not calibrated.
 TEST(Spectra, SayWhatTheirBlocksAreAndAllanDeviationsOfWhat) {
-  EXPECT_NE(spectra_figure(test::example_run(12, 1.0, 240), kAuto).subtitle.find("blocks of 10 periods"),
+  EXPECT_NE(spectra_figure(test::example_run(12, 1.0, 240), kAuto, {}).subtitle.find("blocks of 10 periods"),
             std::string::npos);
-  const std::string brief = spectra_figure(test::example_run(12, 1.0, 48), kAuto).subtitle;
+  const std::string brief = spectra_figure(test::example_run(12, 1.0, 48), kAuto, {}).subtitle;
   EXPECT_NE(brief.find("blocks of 4.0 periods"), std::string::npos) << brief;
   const RestRecords rest = rest_of(test::example_run());
   EXPECT_EQ(allan_figure(rest, true).subtitle.find("samples calibrated"), 0U);

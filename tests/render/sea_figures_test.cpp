@@ -59,7 +59,7 @@ TEST(SeaStates, ShowTheLimitBelowEachMethodThatHasOne) {
 }
 
 TEST(SeaTrace, ErrorsHaveNoMeanAndTheTruthIsTrue) {
-  const Figure figure = sea_trace_figure(test::example_sea_run());
+  const Figure figure = sea_trace_figure(test::example_sea_run(), {});
   ASSERT_EQ(figure.panels.size(), 2U);
   for (const Mark& mark : figure.panels[1].marks) {
     const Line& error = std::get<Line>(mark);
@@ -74,7 +74,7 @@ TEST(SeaTrace, ErrorsHaveNoMeanAndTheTruthIsTrue) {
 TEST(SeaTrace, MethodsThatTellTheSameHeaveAreOneLine) {
   evaluation::RunRecord run = test::example_sea_run();
   run.heave["spectral"] = run.heave["harmonic"];
-  const Figure trace = sea_trace_figure(run), spectra = spectra_figure(run, kAuto);
+  const Figure trace = sea_trace_figure(run, {}), spectra = spectra_figure(run, kAuto, {});
   EXPECT_NE(line_of(trace.panels.at(0), "harmonic, spectral"), nullptr);
   EXPECT_EQ(trace.panels.at(1).marks.size(), 2U);
   EXPECT_NE(line_of(spectra.panels.at(1), "harmonic, spectral"), nullptr);
