@@ -21,7 +21,12 @@ bool shows_published(const CampaignResults& results) {
 }
 
 Figure table2_figure(const CampaignResults& results) {
-  const std::vector<Setting> settings = settings_of(results);
+  constexpr std::size_t kMostSettings = 30;  // more stand too close to be told apart: the maps show them
+  std::vector<Setting> settings = settings_of(results);
+  const bool all = settings.size() <= kMostSettings;
+  if (!all)
+    std::erase_if(settings,
+                  [](const Setting& s) { return published_cell(s.period_s, s.height_m) == nullptr; });
   const std::vector<std::string> methods = methods_of(results);
   const bool published = shows_published(results);
   Figure figure{.title = published ? "Wave heights: published, and measured on this rig"
@@ -32,6 +37,7 @@ Figure table2_figure(const CampaignResults& results) {
                                       : "campaign \"" + results.name + "\"",
                 .share_x = true,
                 .height_mm = 130};
+  if (!all) figure.subtitle += "; of its settings the published ones alone";
   Panel top{.title =
                 "(a) Mean less true height, \u00B1 one standard deviation "
                 "of single waves",

@@ -57,6 +57,20 @@ TEST(CampaignFigures, NameThePaperOnlyWhereASettingOfItsIsShown) {
   EXPECT_TRUE(holds(result_figures(elsewhere()), "mean-heights"));
 }
 
+TEST(CampaignFigures, OfManySettingsChartThePublishedOnesAlone) {
+  const auto grown = [](evaluation::CampaignResults results) {
+    const std::vector<evaluation::CellResult> cells = results.cells;
+    for (int i = 1; i <= 5; ++i)
+      for (evaluation::CellResult cell : cells) {
+        cell.period_s += 0.01 * i;
+        results.cells.push_back(cell);
+      }
+    return results;
+  };
+  EXPECT_EQ(table2_figure(grown(test::example_campaign())).panels.at(0).x.categories.size(), 6U);
+  EXPECT_TRUE(table2_figure(grown(elsewhere())).panels.empty()) << "the maps show them";
+}
+
 TEST(CampaignFigures, AreAllThoseThatTheReportNames) {
   std::vector<NamedFigure> figures = all_figures();
   for (NamedFigure& figure : sea_figures()) figures.push_back(std::move(figure));
