@@ -17,8 +17,11 @@ Figure single_waves_figure(const CampaignResults& results) {
   constexpr std::size_t kMostSlots = 60;  // settings side by side
   const std::vector<Setting> settings = settings_of(results);
   const std::vector<std::string> methods = methods_of(results);
+  const std::vector<double> heights_m = Grid(settings).heights_m;
   // Of regular waves all heights of a setting are one: its waves stand side by side in their order instead.
-  const bool slots = !are_seas(results) && settings.size() <= kMostSlots;
+  // Of many settings those of one height share a slot.
+  const bool each = settings.size() <= kMostSlots;
+  const bool slots = !are_seas(results) && (each || heights_m.size() <= kMostSlots);
   Figure figure{.title = "Single waves, estimated against true", .columns = 3, .height_mm = 95};
   Panel against{.title = "(a) Against true height",
                 .x = {.label = "True height", .unit = "cm"},
@@ -27,7 +30,12 @@ Figure single_waves_figure(const CampaignResults& results) {
                  .y = {.label = "Estimated \u2212 true", .unit = "cm"},
                  .legend = Legend::kNone,
                  .column_span = 2};
-  residual.x = slots ? settings_axis(settings, false) : Axis{.label = "True height", .unit = "cm"};
+  residual.x = slots && each ? settings_axis(settings, false) : Axis{.label = "True height", .unit = "cm"};
+  if (slots && !each) {
+    residual.x.label = "Set height";
+    for (const double height_m : heights_m)
+      residual.x.categories.push_back(fmt::format("{:g}", cm(height_m)));
+  }
   residual.marks.emplace_back(
       Rule{.at = 0, .look = {.color = kFaintInk, .width_pt = 0.7, .dash = Dash::kSolid}});
   Extent heights;
@@ -40,9 +48,11 @@ Figure single_waves_figure(const CampaignResults& results) {
     Points errors{.look = points.look};
     std::vector<double> counted(settings.size(), 0.0), placed(settings.size(), 0.0);
     const auto place_of = [&](const RunResult& run) {
-      return static_cast<std::size_t>(
-          std::find(settings.begin(), settings.end(), Setting{run.period_s, run.height_m}) -
-          settings.begin());
+      const auto place_in = [](const auto& all, const auto& one) {
+        return static_cast<std::size_t>(std::ranges::find(all, one) - all.begin());
+      };
+      return each ? place_in(settings, Setting{run.period_s, run.height_m})
+                  : place_in(heights_m, run.height_m);
     };
     for (const RunResult& run : results.runs)
       if (run.method == methods[m] && place_of(run) < settings.size())

@@ -11,6 +11,7 @@
 #include "render/figures/noise.h"
 #include "render/figures/paper.h"
 #include "render/layout.h"
+#include "render/marks.h"
 #include "tests/render/example_campaign.h"
 #include "tests/render/line_of.h"
 
@@ -165,6 +166,28 @@ TEST(SingleWaves, AreCountedByMethodAndNoneIsLowerThanNothing) {
   prepare_fonts(figure, fonts);
   fonts.bake();
   for (const PanelPlan& p : planned(figure, fonts).panels) EXPECT_EQ(p.x.low, 0);
+}
+
+TEST(SingleWaves, OfManySettingsStandSideBySideByMethod) {
+  evaluation::CampaignResults results = test::example_campaign();
+  const evaluation::CampaignResults few = results;
+  for (int i = 1; i <= 10; ++i) {
+    for (auto cell : few.cells) results.cells.push_back((cell.period_s += 0.01 * i, cell));
+    for (auto run : few.runs) results.runs.push_back((run.period_s += 0.01 * i, run));
+  }
+  const Figure figure = single_waves_figure(results);
+  const Panel& panel = figure.panels.at(1);
+  EXPECT_EQ(panel.x.categories, (std::vector<std::string>{"60", "80", "100"}));
+  std::vector<Extent> first;  // of each method, in the first height's place
+  for (const Mark& mark : panel.marks) {
+    const auto* points = std::get_if<Points>(&mark);
+    if (points == nullptr) continue;
+    first.emplace_back();
+    for (const double x : points->x)
+      if (x < 0.5) first.back().add(x);
+  }
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_LT(first[0].high, first[1].low);
 }
 
 TEST(ErrorMap, TellsWhatWasNotRunFromWhatFoundNoWaveAndNamesThinCells) {
