@@ -92,8 +92,7 @@ std::optional<Figure> direction_figure(const evaluation::CampaignResults& result
   });
   if (!judged) return figure;
   const Axis period{.label = "Set period", .unit = "s"};
-  Panel error{
-      .title = "Error of the direction", .x = period, .y = {.label = "Told \u2212 true", .unit = "°"}};
+  Panel error{.title = "Direction error", .x = period, .y = {.label = "Told \u2212 true", .unit = "°"}};
   Panel spread{.title = "Spread", .x = period, .y = {.label = "Spread", .unit = "°", .low = 0}};
   const std::vector<std::string> methods = all_methods_of(results);
   std::string truth_name = "truth";
@@ -112,10 +111,14 @@ std::optional<Figure> direction_figure(const evaluation::CampaignResults& result
                                      .name = std::exchange(truth_name, ""),
                                      .look = {.color = kInk, .marker = Marker::kHollowCircle}});
   }
-  error.marks.emplace_back(Rule{.at = 2, .name = "limits of CDIP"});
+  error.marks.emplace_back(Rule{.at = 2, .name = "\u00B1 2\u00B0 (CDIP)"});
   error.marks.emplace_back(Rule{.at = -2});
+  error.legend = spread.legend = Legend::kAbove;
+  figure.subtitle += "\nCDIP: what the Coastal Data Information Program asks of a buoy on its test wheel";
   figure.panels.push_back(std::move(error));
   figure.panels.push_back(std::move(spread));
+  for (std::size_t i = 0; i < figure.panels.size(); ++i)
+    figure.panels[i].title = fmt::format("({}) {}", static_cast<char>('a' + i), figure.panels[i].title);
   figure.columns = static_cast<int>(std::min<std::size_t>(figure.panels.size(), 3));
   return figure;
 }

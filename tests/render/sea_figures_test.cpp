@@ -81,6 +81,21 @@ TEST(SeaTrace, MethodsThatTellTheSameHeaveAreOneLine) {
   EXPECT_NE(spectra.subtitle.find("peak period"), std::string::npos) << spectra.subtitle;
 }
 
+TEST(Directions, ExplainTheirLimitsAndLeaveTheDataFree) {
+  evaluation::CampaignResults results = test::example_campaign();
+  for (auto& run : results.runs)
+    for (auto& sea : run.seas) {
+      sea.direction.mean_direction_rad = sea.sea.mean_direction_rad;
+      sea.sea.spread_rad = sea.direction.spread_rad = 0.3;
+    }
+  const Figure figure = direction_figure(results).value();
+  ASSERT_EQ(figure.panels.size(), 3U);
+  EXPECT_EQ(figure.panels[0].title, "(a) harmonic");
+  EXPECT_EQ(figure.panels[2].title, "(c) Spread");
+  EXPECT_NE(figure.subtitle.find("CDIP: "), std::string::npos);
+  for (const std::size_t panel : {1U, 2U}) EXPECT_EQ(figure.panels[panel].legend, Legend::kAbove);
+}
+
 TEST(Rose, SharesAddUpToHundredPercent) {
   const Panel panel = rose_panel("", {0.0, 6.2831, -0.1, 3.2, 1.0}, {1, 2, 3, 4, kAuto});
   double total = 0;
