@@ -94,9 +94,9 @@ std::string html_figure(const std::filesystem::path& png, std::string_view capti
     return v;
   };
   return fmt::format(
-      "<figure><button type=\"button\" title=\"Open "
+      "<figure><div class=\"view\"><button type=\"button\" title=\"Open "
       "large\"><img alt=\"{}\" width=\"{}\" height=\"{}\" "
-      "src=\"data:image/png;base64,{}\"></button>"
+      "src=\"data:image/png;base64,{}\"></button></div>"
       "<figcaption>{}</figcaption></figure>\n",
       html_text(caption), u32(16), u32(20), base64(bytes), html_text(caption));
 }

@@ -44,6 +44,7 @@ addEventListener("load", async () => {
   button.click();
   check("falls", sorted(values(), -1));
   check("keeps its rows", values().sort().join() === before.sort().join());
+  for (const image of pictures) if (image.offsetParent) check("figure's text too small", image.clientWidth >= 480);
   document.querySelector("figure button").click();
   const dialog = document.querySelector("dialog");
   if (innerWidth >= 1280)
