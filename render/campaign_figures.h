@@ -39,8 +39,7 @@ inline constexpr std::array<FigureInfo, 20> kFigureOrder = {{
      "after."},
     {"paper-table-2", "As in the paper",
      "Table 2 as a chart: what was published beside what each method gives, "
-     "with the physical limit of "
-     "single waves."},
+     "with the Cram\u00E9r\u2013Rao bound of single waves."},
     {"paper-4-inertial-data", "As in the paper", "Figure 4: roll, pitch and specific force on three axes."},
     {"paper-5-uncorrected-trace", "As in the paper", "Figure 5: the trace before its errors are corrected."},
     {"paper-6-without-calibration", "As in the paper",
@@ -53,11 +52,12 @@ inline constexpr std::array<FigureInfo, 20> kFigureOrder = {{
     {"sea-heave-map", "Accuracy", "Error of the heave over peak period and Hm0."},
     {"sea-trace", "Accuracy", "Heave of each method beside the true one, and its error."},
     {"mean-heights", "Accuracy",
-     "Mean height and scatter of single waves in every setting, with the physical limit of single waves."},
+     "Mean height and scatter of single waves in every setting, with the Cram\u00E9r\u2013Rao bound of "
+     "single waves."},
     {"error-map", "Accuracy", "Error of the mean wave height over period and height."},
     {"std-map", "Accuracy",
-     "Standard deviation of single waves over period and height, the physical "
-     "limit beside."},
+     "Standard deviation of single waves over period and height, the Cram\u00E9r\u2013Rao "
+     "bound beside."},
     {"frequency-response", "Accuracy", "Gain and phase against period, as on a buoy's calibration sheet."},
     {"single-waves", "Accuracy", "Every single wave, estimated against true."},
     {"uncertainty-budget", "Accuracy", "What the uncertainty of the mean height is made of."},

@@ -8,13 +8,13 @@ namespace waverig::render {
 
 // Table 2 as a chart: what was published beside what each method gives, mean
 // with standard deviation, and the standard deviation of single waves beside
-// the physical limit.
+// the Cramér-Rao bound.
 Figure table2_figure(const evaluation::CampaignResults& results);
 // Whether a setting of the campaign is one of the published ones; the chart names the paper where it is.
 bool shows_published(const evaluation::CampaignResults& results);
 
 // Period x height, a map a method: error of the mean height; standard deviation
-// with the limit beside.
+// with the bound beside.
 Figure error_map_figure(const evaluation::CampaignResults& results);
 Figure std_map_figure(const evaluation::CampaignResults& results);
 

@@ -156,12 +156,12 @@ Figure std_map_figure(const CampaignResults& results) {
   const std::string legend = maps.legend("fewer than two waves");
   if (!maps.panels.empty())  // nothing to hold against it otherwise
     maps.add(
-        "limit (Cram\u00E9r\u2013Rao)", methods, look,
+        "bound (Cram\u00E9r\u2013Rao)", methods, look,
         [](const CellResult& c) { return cm(c.statistics.bound_std_m); }, no_sign);
   const double low = maps.extent.low, high = maps.extent.high;
   return maps_figure(
       "Standard deviation of single waves",
-      "over the waves of all repeats; logarithmic colours, one scale for all maps; the limit is that of a "
+      "over the waves of all repeats; logarithmic colours, one scale for all maps; the bound is that of a "
       "wave by itself, without what its neighbours tell" +
           legend,
       std::move(maps), low, high);

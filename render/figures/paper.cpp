@@ -56,7 +56,7 @@ struct Parabola {
     return {1, x, x * x};
   }
   double at(double t) const { return row(t).dot(coefficients); }
-  double acceleration_mps2() const { return 2 * coefficients.z() / (half_s * half_s); }
+  double acceleration_cmps2() const { return 2 * coefficients.z() / (half_s * half_s); }
 };
 
 // The best within [begin_s, end_s).
@@ -88,7 +88,7 @@ Line uncorrected_line(const evaluation::RunRecord& run, const PaperTraces& trace
   Line line{.name = "levelled acceleration, integrated twice", .look = {.color = 0}};
   for (const estimator::HeaveSample& sample : traces.heave) {
     line.x.push_back(since_start_s(run, sample.utime));
-    line.y.push_back(sample.heave_m);
+    line.y.push_back(sample.heave_m / kCentimetre);
   }
   return line;
 }
@@ -97,9 +97,9 @@ Line uncorrected_line(const evaluation::RunRecord& run, const PaperTraces& trace
 // alpha = b T^2 / (2 pi^2), a height of b T^2 / pi^2.
 std::string bias_text(const evaluation::RunRecord& run, const PaperTraces& traces) {
   const double bias_mps2 =
-      parabola_of(uncorrected_line(run, traces), since_start_s(run, run.steady_begin_utime),
-                  since_start_s(run, run.steady_end_utime))
-          .acceleration_mps2();
+      kCentimetre * parabola_of(uncorrected_line(run, traces), since_start_s(run, run.steady_begin_utime),
+                                since_start_s(run, run.steady_end_utime))
+                        .acceleration_cmps2();
   const double height_m = bias_mps2 * run.period_s * run.period_s / (std::numbers::pi * std::numbers::pi);
   return fmt::format(
       "\nacceleration off by b = {} m/s\u00B2, which alone adds b T\u00B2/\u03C0\u00B2 = {} cm to a height",
@@ -164,16 +164,16 @@ Figure uncorrected_trace_figure(const evaluation::RunRecord& run, const PaperTra
   Line truth{.name = "true heave", .look = {.color = kFaintInk, .width_pt = 0.8}};
   for (const evaluation::TruthSample& sample : run.truth) {
     truth.x.push_back(since_start_s(run, sample.utime));
-    truth.y.push_back(sample.heave_m);
+    truth.y.push_back(sample.heave_m / kCentimetre);
   }
   const Axis time{.label = "Time since the start of the record",
                   .unit = "s",
                   .low = 0,
                   .high = line.x.empty() ? kAuto : line.x.back()};
-  Panel whole{.title = "(a) As it is", .x = time, .y = {.label = "Heave", .unit = "m"}};
+  Panel whole{.title = "(a) As it is", .x = time, .y = {.label = "Heave", .unit = "cm"}};
   Panel rest{.title = "(b) Less the parabola that fits the steady part best",
              .x = time,
-             .y = {.label = "Heave", .unit = "m"},
+             .y = {.label = "Heave", .unit = "cm"},
              .legend = Legend::kNone};
   for (Panel* panel : {&whole, &rest})
     shade_ramps(run, line.x.empty() ? 0 : line.x.back(), *panel, "rest and ramps");

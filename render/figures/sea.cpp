@@ -59,7 +59,7 @@ Figure sea_states_figure(const CampaignResults& results) {
     return static_cast<double>(setting) - 0.35 + (static_cast<double>(method) + 0.5) * step;
   };
   bool any = false;
-  std::string without_sea, bound_name = "limit (Wiener)";
+  std::string without_sea, bound_name = "bound (Wiener)";
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const auto add = [&](Panel& panel, auto value) {
       Points points{
@@ -94,7 +94,7 @@ Figure sea_states_figure(const CampaignResults& results) {
   }
   if (!any) return figure;
   if (bound_name.empty())
-    figure.subtitle += "; limit: the least to be expected, a single record may fall below";
+    figure.subtitle += "; bound: the least to be expected, a single record may fall below";
   if (!without_sea.empty()) {
     height.marks.emplace_back(
         Note{.x = 0.01, .y = 0.97, .text = "gives no sea state: " + without_sea, .color = kFaintInk});

@@ -105,8 +105,8 @@ Figure table2_figure(const CampaignResults& results) {
         [&](const Setting& s) { return of(s, &evaluation::HeightStatistics::std_m); });
   }
   if (!any_measured) return figure;
-  // The limit lies below all of a setting's bars: one stroke across them.
-  std::string bound_name = "limit (Cram\u00E9r\u2013Rao)";
+  // The bound lies below all of a setting's bars: one stroke across them.
+  std::string bound_name = "bound (Cram\u00E9r\u2013Rao)";
   for (std::size_t i = 0; i < settings.size(); ++i) {
     double bound_m = kAuto;
     for (const std::string& method : methods) {

@@ -72,7 +72,7 @@ std::string height_answer(const MethodSummary& s) {
     out +=
         fmt::format("; single waves scatter by {} cm", range_text(cm(s.least_std_m), cm(s.largest_std_m), 2));
   if (std::isfinite(s.worst_std_over_bound))
-    out += fmt::format(", at most {:.2f} times the physical limit", s.worst_std_over_bound);
+    out += fmt::format(", at most {:.2f} times the Cram\u00E9r\u2013Rao bound", s.worst_std_over_bound);
   return out + ".</li>\n";
 }
 
@@ -124,11 +124,11 @@ HtmlCell signed_cell(HtmlCell cell, const char* sign) {
 std::string results_table(const CampaignResults& results) {
   HtmlTable table(
       "Steady waves of all repeats; lengths in cm. U: expanded "
-      "uncertainty of the mean, k = 2. Error: of the mean against the mean true height; * beyond U. Limit: "
-      "Cram\u00E9r\u2013Rao bound of the standard "
+      "uncertainty of the mean, k = 2. Error: of the mean against the mean true height; * beyond U. Bound: "
+      "Cram\u00E9r\u2013Rao, of the standard "
       "deviation of a wave by itself. A number leads to the runs behind it.",
       {"Period s", "Height cm", "Method", "Waves", "Mean", "True", "Error %", "U (k\u00A0=\u00A02)", "Std",
-       "Limit", "Std / limit", "RMSE"});
+       "Bound", "Std / bound", "RMSE"});
   const SettingColumns set(results.cells);
   for (const CellResult& cell : results.cells) {
     const evaluation::HeightStatistics& s = cell.statistics;

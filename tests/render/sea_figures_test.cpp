@@ -35,27 +35,27 @@ TEST(SeaStates, AreTheRatiosToTheTruth) {
   EXPECT_TRUE(values_of(1, "lee2014").empty()) << "it gives no sea state";
 }
 
-TEST(SeaStates, ShowTheLimitBelowEachMethodThatHasOne) {
+TEST(SeaStates, ShowTheBoundBelowEachMethodThatHasOne) {
   evaluation::CampaignResults campaign = test::example_sea_campaign();
   for (evaluation::CellResult& cell : campaign.cells)
     if (cell.method == "harmonic") cell.heave_bound_m = 0.004 * cell.true_hm0_m;
   const Figure figure = sea_states_figure(campaign);
   const Points* harmonic = nullptr;
-  std::vector<const Line*> limits;
+  std::vector<const Line*> bounds;
   for (const Mark& mark : figure.panels[0].marks) {
-    if (const auto* line = std::get_if<Line>(&mark)) limits.push_back(line);
+    if (const auto* line = std::get_if<Line>(&mark)) bounds.push_back(line);
     if (const auto* points = std::get_if<Points>(&mark); points != nullptr && points->name == "harmonic")
       harmonic = points;
   }
   ASSERT_NE(harmonic, nullptr);
-  ASSERT_EQ(limits.size(), harmonic->x.size());
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    EXPECT_NEAR(limits[i]->y[0], 0.4, 1e-9);
-    EXPECT_NEAR((limits[i]->x[0] + limits[i]->x[1]) / 2, harmonic->x[i], 1e-9);
-    EXPECT_EQ(limits[i]->name.empty(), i > 0) << "one entry in the legend";
+  ASSERT_EQ(bounds.size(), harmonic->x.size());
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    EXPECT_NEAR(bounds[i]->y[0], 0.4, 1e-9);
+    EXPECT_NEAR((bounds[i]->x[0] + bounds[i]->x[1]) / 2, harmonic->x[i], 1e-9);
+    EXPECT_EQ(bounds[i]->name.empty(), i > 0) << "one entry in the legend";
   }
   EXPECT_NE(figure.subtitle.find("a single record may fall below"), std::string::npos);
-  EXPECT_EQ(sea_states_figure(test::example_sea_campaign()).subtitle.find("limit"), std::string::npos);
+  EXPECT_EQ(sea_states_figure(test::example_sea_campaign()).subtitle.find("bound"), std::string::npos);
 }
 
 TEST(SeaTrace, ErrorsHaveNoMeanAndTheTruthIsTrue) {

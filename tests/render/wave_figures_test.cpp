@@ -1,6 +1,7 @@
 // Figures of single waves and of what each method makes of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -47,6 +48,17 @@ TEST(PaperFigures, SayWhereTheyDoNotShowTheWholeRecord) {
   EXPECT_EQ(subtitle_of(whole).find("shown"), std::string::npos) << subtitle_of(whole);
   EXPECT_NE(subtitle_of(longer).find("shown: the first 144 of 228 s"), std::string::npos)
       << subtitle_of(longer);
+}
+
+TEST(PaperFigures, ShowHeaveInCentimetres) {
+  const evaluation::RunRecord run = test::example_run(12, 1.0, 120);
+  const PaperTraces traces = recorded_traces(run, "harmonic");
+  const Panel before = uncorrected_trace_figure(run, traces, true).panels.at(1);
+  const Panel after = corrected_trace_figure(run, traces, true).panels.at(0);
+  for (const Panel& panel : {before, after}) EXPECT_EQ(panel.y.unit, "cm");
+  const Line* truth = line_of(before, "true heave");
+  ASSERT_NE(truth, nullptr);
+  EXPECT_NEAR(*std::ranges::max_element(truth->y), 50, 0.1);
 }
 
 TEST(PaperFigures, TellTheMeanOfASingleWaveWithoutAScatter) {
