@@ -8,6 +8,7 @@
 
 #include "rig/bench/bench.h"
 #include "rig/bench/report/control_chart.h"
+#include "rig/bench/report/figures.h"
 #include "rig/bench/report/live_view.h"
 #include "tests/bench/short_sequence.h"
 #include "tests/campaign/temporary_directory.h"
@@ -147,6 +148,11 @@ TEST(Traces, FollowTheWholeRunAndAreTheSameFromTheStoreAsTheyCame) {
   for (std::size_t i = 1; i < traces.time_s().size(); ++i) EXPECT_LT(traces.time_s()[i] - traces.time_s()[i - 1], 2 * kTracePeriod_s);
 }
 
+TEST(LiveView, ReadsUnitsAsPeopleWriteThem) {
+  EXPECT_EQ(as_read("temperature=5 degC/channel=gyro_2"), "temperature=5 \u00B0C/channel=gyro_2");
+  EXPECT_EQ(as_read("set calibrator.current -30 uA"), "set calibrator.current -30 \u00B5A");
+}
+
 TEST(LiveView, IsReplacedWholeWhileTheBenchRuns) {
   const FinishedRun run;
   const TemporaryDirectory directory;
@@ -160,6 +166,7 @@ TEST(LiveView, IsReplacedWholeWhileTheBenchRuns) {
   live.draw();
   EXPECT_NE(picture(), early);
   EXPECT_NE(bytes_of(directory / "live.html").find("live.png"), std::string::npos);
+  EXPECT_NE(bytes_of(directory / "live.html").find("<meta name=\"viewport\""), std::string::npos);
   for (const auto& entry : std::filesystem::directory_iterator(directory.path()))   // nothing half-written remains
     EXPECT_TRUE(entry.path().filename() == "live.png" || entry.path().filename() == "live.html") << entry.path();
 }

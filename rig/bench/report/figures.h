@@ -30,4 +30,7 @@ struct BenchFigure {
 std::vector<BenchFigure> bench_figures(const Sequence& sequence, const Store& store,
                                        const Analysis* analysis);
 
+// Sequence files are written in ASCII: their units as people read them.
+std::string as_read(std::string text);
+
 }  // namespace waverig::rig::bench

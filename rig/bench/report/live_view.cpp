@@ -10,7 +10,8 @@ namespace waverig::rig::bench {
 namespace {
 
 constexpr const char* kPage =
-    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
+    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+    "content=\"width=device-width, initial-scale=1\"><meta http-equiv=\"refresh\" "
     "content=\"5\"><title>waverig bench</title>"
     "</head>\n<body style=\"margin:0\"><img src=\"live.png\" alt=\"The bench's graph windows\" "
     "style=\"max-width:100%\"></body></html>\n";
@@ -35,10 +36,10 @@ void LiveView::add(const TraceRow& row) {
 }
 
 void LiveView::show(const Progress& progress) {
-  status_ =
-      fmt::format("Step {} of {}: {} {}; {} left{}", progress.step->index + 1, progress.steps,
-                  progress.step->path, describe_action(*progress.step), show_duration(progress.remaining_s),
-                  progress.alarm.empty() ? "" : "; alarm: " + progress.alarm);
+  status_ = fmt::format("Step {} of {}: {} {}; {} left{}", progress.step->index + 1, progress.steps,
+                        as_read(progress.step->path), as_read(describe_action(*progress.step)),
+                        show_duration(progress.remaining_s),
+                        progress.alarm.empty() ? "" : "; alarm: " + progress.alarm);
 }
 
 void LiveView::draw_if_due() {

@@ -10,6 +10,14 @@
 #include "rig/bench/report/figures.h"
 
 namespace waverig::rig::bench {
+std::string as_read(std::string text) {
+  if (text.starts_with('-')) text.replace(0, 1, "\u2212");
+  for (const auto& [ascii, read] : {std::pair{"degC", "°C"}, {" uA", " µA"}, {" uV", " µV"}})
+    if (const std::size_t at = text.find(ascii); at != std::string::npos)
+      text.replace(at, std::strlen(ascii), read);
+  return text;
+}
+
 namespace {
 
 using render::Axis;
@@ -81,15 +89,6 @@ std::string variable(const std::string& path, std::string_view name) {  // "temp
   if (at == std::string::npos) return "";
   const std::size_t from = at + key.size();
   return path.substr(from, path.find('/', from) - from);
-}
-
-// Sequence files are written in ASCII.
-std::string as_read(std::string text) {
-  if (text.starts_with('-')) text.replace(0, 1, "\u2212");
-  for (const auto& [ascii, read] : {std::pair{"degC", "°C"}, {" uA", " µA"}, {" uV", " µV"}})
-    if (const std::size_t at = text.find(ascii); at != std::string::npos)
-      text.replace(at, std::strlen(ascii), read);
-  return text;
 }
 
 // A row a category, a bar from the beginning to the end of everything that belongs to it.
