@@ -220,7 +220,9 @@ void RigScene::draw_labels(const RigMotion& motion, const RigInstant& at, const 
     for (double z = std::ceil(low / step - 1e-9) * step; z <= high + 1e-9; z += step) {
       line({x, 0, z}, {x + 0.05 * (r + 0.3), 0, z}, colors.ink, thin);
       const Vec2 p = on_page({x + gap, 0, z});
-      painter.text(p, number_text(100 * z, 0) + (z + step > high + 1e-9 ? " cm" : ""),
+      // Off its stroke, or that would be read as a second minus.
+      painter.text({p.x + 0.5F * text_px, p.y},
+                   number_text(100 * z, 0) + (z + step > high + 1e-9 ? " cm" : ""),
                    {.size_px = text_px, .color = colors.ink, .v = VAlign::kMiddle});
     }
     const auto pointer = [&](double z, Color color, float grown) {
