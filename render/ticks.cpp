@@ -104,8 +104,8 @@ Ticks log_ticks(double low, double high, int most) {
     const double mantissa = value / std::pow(10.0, exponent);
     return (mantissa > 1.5 ? number_text(mantissa, 0) + "\u00B7" : "") + power_of_ten_text(exponent);
   };
-  if (last - first < 1) {  // not two decades' marks: 1, 2, 5, or plain numbers
-                           // where even that is too coarse
+  // Of few decades 1, 2 and 5 where they fit; of less than one plain numbers where even they are too coarse.
+  if (const bool one = last - first < 1; one || (plain && last - first < 2)) {
     for (double decade = first - 1; decade <= last + 1; ++decade) {
       for (int m = 1; m <= 9; ++m) {
         const double v = m * std::pow(10.0, decade);
@@ -116,8 +116,9 @@ Ticks log_ticks(double low, double high, int most) {
           ticks.minor.push_back(v);
       }
     }
-    if (ticks.major.size() >= 2) return ticks;
-    return linear_ticks(low, high, most);
+    if (one && ticks.major.size() < 2) return linear_ticks(low, high, most);
+    if (one || ticks.major.size() <= static_cast<std::size_t>(std::max(1, most))) return ticks;
+    ticks = {};
   }
   const double every = std::max(1.0, std::ceil((last - first + 1) / std::max(1, most)));
   for (double decade = first - 1; decade <= last; ++decade) {

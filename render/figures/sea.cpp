@@ -89,6 +89,20 @@ Figure sea_states_figure(const CampaignResults& results) {
     add(heave, [](const CellResult& c) { return 100 * c.heave_rmse_m / c.true_hm0_m; });
     const bool has_sea =
         add(height, [](const CellResult& c) { return 100 * (c.sea.sea.hm0_m / c.sea.true_hm0_m - 1); });
+    ErrorBars stated{.look = {.color = static_cast<int>(m), .width_pt = 0.8}};
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      const CellResult* cell = cell_of(results, settings[i], methods[m]);
+      if (cell == nullptr || !std::isfinite(cell->sea.sea.hm0_sigma_m)) continue;
+      const estimator::SeaState& sea = cell->sea.sea;
+      stated.x.push_back(place(i, m));
+      stated.y.push_back(100 * (sea.hm0_m / cell->sea.true_hm0_m - 1));
+      stated.minus.push_back(200 * sea.hm0_sigma_m / cell->sea.true_hm0_m);
+      stated.plus.push_back(stated.minus.back());
+    }
+    if (!stated.x.empty()) {
+      height.title = "(b) Hm0, measured less true, \u00B1 two standard uncertainties where stated";
+      height.marks.emplace_back(std::move(stated));
+    }
     add(period, [](const CellResult& c) { return 100 * (c.sea.sea.tm02_s / c.sea.true_tm02_s - 1); });
     if (!has_sea) without_sea += (without_sea.empty() ? "" : ", ") + methods[m];
   }

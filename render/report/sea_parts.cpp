@@ -58,12 +58,16 @@ std::string sea_answer(const CampaignResults& results) {
 }
 
 std::string sea_results_table(const CampaignResults& results) {
+  constexpr std::ptrdiff_t kUncertaintyColumn = 10;  // behind the measured Hm0
   const bool directions = std::any_of(results.cells.begin(), results.cells.end(), [](const CellResult& c) {
     return std::isfinite(c.sea.sea.mean_direction_rad);
   });
   std::vector<std::string> heads = {"Tp s",        "Hm0 cm",  "Method",      "Waves",  "Heave error cm",
                                     "% of Hm0",    "Bound %", "Gain",        "Lag ms", "Hm0 measured",
                                     "Hm0 error %", "Tm02 s",  "Tm02 error %"};
+  const bool stated = std::any_of(results.cells.begin(), results.cells.end(),
+                                  [](const CellResult& c) { return std::isfinite(c.sea.sea.hm0_sigma_m); });
+  if (stated) heads.insert(heads.begin() + kUncertaintyColumn, "\u00B1 (k\u00A0=\u00A02)");
   if (directions) heads.emplace_back("From \u00B0");
   HtmlTable table(
       "The steady parts of all repeats; Tp and Hm0 as set. Heave error: root mean square against the true "
@@ -91,6 +95,9 @@ std::string sea_results_table(const CampaignResults& results) {
                                    number(hm0_percent(cell), 2),
                                    number(sea.tm02_s, 3),
                                    number(tm02_percent(cell), 2)};
+    if (stated)
+      cells.insert(cells.begin() + kUncertaintyColumn,
+                   number(cm(evaluation::kCoverageFactor * sea.hm0_sigma_m), 2));
     if (directions) cells.push_back(number(sea.mean_direction_rad / kDegree, 1));
     table.add_row(std::move(cells));
   }

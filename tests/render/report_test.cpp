@@ -250,6 +250,16 @@ TEST(Report, OfSeasSpeaksOfHeaveAndSeaStates) {
   EXPECT_EQ(html.find("of the true height in every setting"), std::string::npos);
 }
 
+TEST(Report, StatesTheUncertaintyOfHm0WhereAMethodDoes) {
+  const test::TemporaryFolder empty;
+  evaluation::CampaignResults seas = test::example_sea_campaign();
+  EXPECT_EQ(report_html(seas, empty.path()).find("\u00B1 (k"), std::string::npos);
+  seas.cells[0].sea.sea.hm0_sigma_m = 0.0123;
+  const std::string html = report_html(seas, empty.path());
+  EXPECT_NE(html.find(">Hm0 measured</th><th scope=\"col\">\u00B1 (k"), std::string::npos);
+  EXPECT_NE(html.find(">2.46<"), std::string::npos);
+}
+
 TEST(Report, NamesTheSettingsThatWereNotRun) {
   const test::TemporaryFolder empty;
   evaluation::CampaignResults results = test::example_campaign();

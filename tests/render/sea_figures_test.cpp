@@ -58,6 +58,22 @@ TEST(SeaStates, ShowTheBoundBelowEachMethodThatHasOne) {
   EXPECT_EQ(sea_states_figure(test::example_sea_campaign()).subtitle.find("bound"), std::string::npos);
 }
 
+TEST(SeaStates, ShowTheStatedUncertaintyOfHm0) {
+  evaluation::CampaignResults campaign = test::example_sea_campaign();
+  const auto lengths_of = [&] {
+    std::vector<double> lengths;
+    const Figure figure = sea_states_figure(campaign);
+    for (const Mark& mark : figure.panels.at(1).marks)
+      if (const auto* bars = std::get_if<ErrorBars>(&mark)) lengths = bars->plus;
+    return lengths;
+  };
+  EXPECT_TRUE(lengths_of().empty());
+  for (evaluation::CellResult& cell : campaign.cells)
+    if (cell.method == "harmonic") cell.sea.sea.hm0_sigma_m = 0.003 * cell.true_hm0_m;
+  ASSERT_EQ(lengths_of().size(), 6U);
+  for (const double percent : lengths_of()) EXPECT_NEAR(percent, 0.6, 1e-9);
+}
+
 TEST(SeaTrace, ErrorsHaveNoMeanAndTheTruthIsTrue) {
   const Figure figure = sea_trace_figure(test::example_sea_run(), {});
   ASSERT_EQ(figure.panels.size(), 2U);

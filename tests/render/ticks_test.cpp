@@ -77,6 +77,8 @@ TEST(NumberText, KeepsTheDigitsThatCount) {
 }
 
 TEST(LogTicks, FallBackToOneTwoFiveWithinADecade) {
+  EXPECT_EQ(labels(log_ticks(0.3, 15, 6)), (std::vector<std::string>{"0.5", "1", "2", "5", "10"}));
+  EXPECT_EQ(labels(log_ticks(0.3, 15, 4)), (std::vector<std::string>{"1", "10"})) << "no room for more";
   EXPECT_EQ(labels(log_ticks(0.9, 6, 6)), (std::vector<std::string>{"1", "2", "5"}));
 }
 
