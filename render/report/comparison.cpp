@@ -79,7 +79,7 @@ std::string cells_table(const std::vector<evaluation::CellComparison>& cells) {
       quantities.push_back(q);
       seas = true;
     }
-  std::vector<std::string> heads = {"Period s", "Height cm", "Method", "Verdict"};
+  std::vector<std::string> heads = SettingColumns::heads(seas, {"Method", "Verdict"});
   for (const Quantity& q : quantities)
     for (const char* column : {", baseline", ", candidate", ": verdict"})
       heads.push_back(std::string(q.name) + column);

@@ -56,8 +56,8 @@ std::string direction_results_table(const evaluation::CampaignResults& results) 
       "Error: told minus the true direction of the same record, mean and root mean square over the runs. "
       "Check factor: "
       "horizontal over vertical motion.",
-      {"Period s", "Height cm", "Method", "From", "Error", "Rms error", "Spread", "True spread",
-       "Check factor", "True check factor"});
+      SettingColumns::heads(are_seas(results), {"Method", "From", "Error", "Rms error", "Spread",
+                                                "True spread", "Check factor", "True check factor"}));
   const SettingColumns set(results.cells);
   for (const evaluation::CellResult& cell : results.cells) {
     if (!tells_direction(cell)) continue;

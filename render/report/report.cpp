@@ -171,7 +171,7 @@ std::string budget_section(const CampaignResults& results) {
           "scatter of single waves") +
           (are_seas(results) ? ", which on a sea is mostly its own" : "") +
           "; B: from what is known beforehand.",
-      {"Period s", "Height cm", "Method", "Contribution", "Type", "mm"});
+      SettingColumns::heads(are_seas(results), {"Method", "Contribution", "Type", "mm"}));
   const SettingColumns set(results.cells);
   for (const CellResult& cell : results.cells) {
     for (const evaluation::Contribution& part : cell.statistics.budget)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "estimator/evaluation/results.h"
 #include "motion/kinematics/frames.h"
@@ -21,6 +22,11 @@ class SettingColumns {
       period_decimals_ = std::max(period_decimals_, decimals_of(row.period_s));
       height_decimals_ = std::max(height_decimals_, decimals_of(row.height_m / kCentimetre));
     }
+  }
+  // Their titles in front of others: of seas the set period and height are Tp and Hm0.
+  static std::vector<std::string> heads(bool seas, std::vector<std::string> others) {
+    others.insert(others.begin(), {seas ? "Tp s" : "Period s", seas ? "Hm0 cm" : "Height cm"});
+    return others;
   }
   template <class Row>
   HtmlCell period(const Row& row) const {

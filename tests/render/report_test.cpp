@@ -314,7 +314,8 @@ TEST(Comparison, ShowsHm0AndHeaveOfSeasAlone) {
   better.cells[0].heave_rmse_m = 0.0111;
   better.cells[0].sea.sea.hm0_m = 1.0567;
   const std::string html = comparison_html(seas, empty.path(), better, empty.path());
-  for (const char* text : {">Hm0 error, baseline<", ">Hm0 error, candidate<", ">Hm0 error: verdict<", ">Heave rms, baseline<",
+  EXPECT_NE(page(heights).find(">Period s<"), std::string::npos);
+  for (const char* text : {">Tp s<", ">Hm0 cm<", ">Hm0 error, baseline<", ">Hm0 error, candidate<", ">Hm0 error: verdict<", ">Heave rms, baseline<",
                            ">Heave rms: verdict<", ">3.45<", ">5.67<", ">1.23<", ">1.11<"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   const std::size_t row = html.find(">3.45<");
