@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "render/figures/accuracy.h"
-#include "render/figures/methods.h"
 #include "render/figures/settings.h"
 #include "render/marks.h"
 
@@ -76,11 +75,18 @@ Figure single_waves_figure(const CampaignResults& results) {
     }
     if (points.x.empty()) continue;
     counts.add(static_cast<double>(points.x.size()));
+    const auto same = std::ranges::find_if(against.marks, [&](const Mark& mark) {
+      const auto& other = std::get<Points>(mark);
+      return other.x == points.x && other.y == points.y;
+    });
+    if (same != against.marks.end()) {  // one legend is of both panels
+      std::get<Points>(*same).name += ", " + methods[m];
+      continue;
+    }
     against.marks.emplace_back(std::move(points));
     residual.marks.emplace_back(std::move(errors));
   }
   if (counts.empty()) return figure;
-  for (Panel* panel : {&against, &residual}) draw_same_once(panel->marks);
   const double room = 0.08 * (heights.high - heights.low) + 1;
   const double low = std::max(0.0, heights.low - room), high = heights.high + room;
   if (low == 0) {  // no wave is lower

@@ -180,6 +180,24 @@ TEST(SingleWaves, AreCountedByMethodAndNoneIsLowerThanNothing) {
   for (const PanelPlan& p : planned(figure, fonts).panels) EXPECT_EQ(p.x.low, 0);
 }
 
+TEST(SingleWaves, OfMethodsThatTellTheSameAreDrawnOnceInBothPanels) {
+  evaluation::CampaignResults results = test::example_campaign();
+  for (auto cells = results.cells; auto& cell : cells)
+    if (cell.method == "harmonic") results.cells.push_back((cell.method = "spectral", cell));
+  for (auto runs = results.runs; auto& run : runs)
+    if (run.method == "harmonic") results.runs.push_back((run.method = "spectral", run));
+  const Figure figure = single_waves_figure(results);
+  const auto points_of = [&](std::size_t panel) {
+    std::vector<const Points*> points;
+    for (const Mark& mark : figure.panels.at(panel).marks)
+      if (const auto* p = std::get_if<Points>(&mark)) points.push_back(p);
+    return points;
+  };
+  EXPECT_EQ(points_of(0).size(), 2U);
+  EXPECT_EQ(points_of(0).at(1)->name, "harmonic, spectral");
+  EXPECT_EQ(points_of(1).size(), 2U) << "none without a name";
+}
+
 TEST(SingleWaves, OfManySettingsStandSideBySideByMethod) {
   evaluation::CampaignResults results = test::example_campaign();
   const evaluation::CampaignResults few = results;
