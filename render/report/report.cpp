@@ -66,8 +66,8 @@ std::string height_answer(const MethodSummary& s) {
   out += fmt::format("the mean wave height is within {:.2f} % of the true height in {}",
                      s.worst_error_percent, where);
   if (s.beyond_uncertainty > 0)
-    out += fmt::format(", in {} of {} further off than its expanded uncertainty U", s.beyond_uncertainty,
-                       s.settings - without);
+    out += fmt::format("; in {} of {} it is further off than its expanded uncertainty U",
+                       s.beyond_uncertainty, s.settings - without);
   if (std::isfinite(s.largest_std_m))  // one wave a setting has no scatter
     out +=
         fmt::format("; single waves scatter by {} cm", range_text(cm(s.least_std_m), cm(s.largest_std_m), 2));
