@@ -320,8 +320,13 @@ std::string runs_of_cell(const CampaignResults& results, const CellResult& cell)
 }
 
 std::string runs_section(const CampaignResults& results) {
+  constexpr std::size_t kMostOpen = 30;  // more are scrolled past in vain: a link into them unfolds them
+  const bool folded = results.cells.size() > kMostOpen;
   std::string out = "<section id=\"runs\"><h2>Runs and waves</h2>\n";
+  if (folded)
+    out += fmt::format("<details><summary>{} settings and methods</summary><div>\n", results.cells.size());
   for (const CellResult& cell : results.cells) out += runs_of_cell(results, cell);
+  if (folded) out += "</div></details>\n";
   return out + "</section>\n";
 }
 

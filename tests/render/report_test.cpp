@@ -250,6 +250,20 @@ TEST(Report, OfSeasSpeaksOfHeaveAndSeaStates) {
   EXPECT_EQ(html.find("of the true height in every setting"), std::string::npos);
 }
 
+TEST(Report, FoldsTheRunsOfManySettings) {
+  const test::TemporaryFolder empty;
+  evaluation::CampaignResults results = test::example_campaign();
+  const std::string fold = "<h2>Runs and waves</h2>\n<details><summary>";
+  EXPECT_EQ(report_html(results, empty.path()).find(fold), std::string::npos);
+  const std::vector<evaluation::CellResult> cells = results.cells;
+  for (const double more_s : {0.5, 1.0})
+    for (evaluation::CellResult cell : cells) {
+      cell.period_s += more_s;
+      results.cells.push_back(cell);
+    }
+  EXPECT_NE(report_html(results, empty.path()).find(fold + "36 settings and methods"), std::string::npos);
+}
+
 TEST(Report, StatesTheUncertaintyOfHm0WhereAMethodDoes) {
   const test::TemporaryFolder empty;
   evaluation::CampaignResults seas = test::example_sea_campaign();
