@@ -37,7 +37,7 @@ T get(const std::uint8_t*& at) {
 }  // namespace
 
 EventLogWriter::EventLogWriter(const std::filesystem::path& path)
-    : path_(path), file_(std::fopen(path.c_str(), "wb")), buffer_(kFileBuffer) {
+    : path_(path), buffer_(kFileBuffer), file_(std::fopen(path.c_str(), "wb")) {
   const std::error_code error(file_ ? 0 : errno, std::generic_category());
   if (error) refuse_place(error, fmt::format("{}: cannot be written: {}", path.string(), error.message()));
   std::setvbuf(file_.get(), buffer_.data(), _IOFBF, buffer_.size());

@@ -40,8 +40,8 @@ class EventLogWriter {
     void operator()(std::FILE* f) const { std::fclose(f); }
   };
   std::filesystem::path path_;
+  std::vector<char> buffer_;  // the file's, which it outlives
   std::unique_ptr<std::FILE, Closer> file_;
-  std::vector<char> buffer_;
   std::int64_t events_ = 0;
 };
 

@@ -27,9 +27,10 @@ struct CalibrationsArguments {
 };
 
 int list(const CalibrationsArguments& arguments) {
+  const std::vector<FrontEndCalibration> all = History(arguments.history).all();
   fmt::print("{:<54} {:<21} {:<28} {:>8} {:>12} {:>12}\n", "id", "measured", "unit", "channels", "scale U",
              "bias U");
-  for (const FrontEndCalibration& c : History(arguments.history).all()) {
+  for (const FrontEndCalibration& c : all) {
     double scale = 0, bias = 0;
     for (const FrontEndChannel& channel : c.channels) {
       if (measured(c, channel, Coefficient::kScaleN)) scale = std::max(scale, scale_expanded(channel));

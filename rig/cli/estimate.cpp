@@ -27,6 +27,7 @@
 #include "rig/cli/number_checks.h"
 #include "rig/cli/recording.h"
 #include "rig/cli/signals.h"
+#include "rig/cli/turning.h"
 #include "rig/nodes/sample_watch.h"
 #include "rig/version.h"
 
@@ -152,6 +153,7 @@ class SeaStates : public estimator::Output {
 // What went by of the record.
 struct Record {
   rig::SampleWatch watch;
+  Turning turning;  // of the samples that are used
   std::int64_t begin_utime = 0, end_utime = 0;
   struct Mean {
     double sum = 0;
@@ -165,7 +167,9 @@ struct Record {
     watch.add(sample);
     end_utime = sample.utime;
     if (!sample.f_B.allFinite()) return;
-    Mean& mean = watch.left_out() > left_out ? left_out_mps2 : used_mps2;
+    const bool used = watch.left_out() == left_out;
+    if (used) turning.add(sample);
+    Mean& mean = used ? used_mps2 : left_out_mps2;
     mean.sum += sample.f_B.norm();
     ++mean.count;
   }
@@ -210,6 +214,11 @@ void check_units(const Record& record, const EstimateArguments& arguments) {
   if (record.watch.left_out() == record.watch.samples())
     throw UserError(fmt::format("{}: {}; expected samples in m/s^2 and rad/s, nothing is told from these",
                                 arguments.input, record.watch.words()));
+  if (record.turning.contradicts_itself())
+    throw UserError(fmt::format(
+        "{}: by its gyroscope the unit turns at {:.1f} rad/s (rms), by its accelerometer at {:.2f}; expected "
+        "rates in rad/s about the accelerometer's axes (are they in degrees?)",
+        arguments.input, record.turning.told_radps(), record.turning.seen_radps()));
 }
 
 int estimate(const EstimateArguments& arguments) {
@@ -294,6 +303,10 @@ int estimate(const EstimateArguments& arguments) {
 void add_estimate(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<EstimateArguments>();
   const auto names = estimator::method_names();
+  const auto known_method = [names](const std::string& name) {
+    if (std::ranges::find(names, name) != names.end()) return std::string();
+    return fmt::format("{}: expected one of {}", name, fmt::join(names, ", "));
+  };
   const bool smooths = std::find(names.begin(), names.end(), "smoothed") != names.end();
   arguments->method = smooths ? "smoothed" : "harmonic";
   CLI::App* command =
@@ -302,6 +315,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
       ->required();
   command->add_option("--out", arguments->out, "Directory to write into")->required();
   command->add_option("--method", arguments->method, fmt::format("Method: {}", fmt::join(names, ", ")))
+      ->check(known_method)
       ->capture_default_str();
   command->add_option(
       "--calibration", arguments->calibration,
@@ -334,7 +348,9 @@ void add_estimate(CLI::App& app, Command& chosen) {
       "  waverig estimate recording.csv.gz --out results/mine --rest-seconds 5\n"
       "  waverig estimate recording.csv.gz --calibration unit7.json --out results/mine\n"
       "  waverig estimate recording.csv.gz --method realtime --lag-s 2 --out results/late\n"
-      "  waverig estimate results/table2/runs/T12.00s_H100.0cm_r1.lcm --out results/again --method lee2014");
+      "  waverig estimate results/table2/runs/T12.00s_H100.0cm_r1.lcm --gravity 9.7986 --out results/again "
+      "--method lee2014\n"
+      "lee2014 needs gravity to 1 mm/s^2; a campaign's is that of the [place] in its campaign.toml.");
   command->callback([arguments, &chosen] { chosen = [arguments] { return estimate(*arguments); }; });
 }
 

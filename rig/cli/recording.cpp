@@ -77,7 +77,7 @@ SampleSource uncalibrated_samples_of(const fs::path& path) {
 }
 
 void check_time_unit(const std::string& file, double usual_interval_s) {
-  constexpr double kShortest_s = 1e-4, kLongest_s = 2;
+  constexpr double kShortest_s = 6e-4, kLongest_s = 2;  // milliseconds of 2 Hz and more are seen
   if (usual_interval_s > 0 && (usual_interval_s < kShortest_s || usual_interval_s > kLongest_s))
     throw UserError(
         fmt::format("{}: column utime: by its times a row every {:g} s; expected microseconds, a row every "

@@ -244,6 +244,32 @@ TEST(Program, RefusesARecordingOfWhichEverySampleWasLeftOut) {
   EXPECT_EQ(bytes_of(temporary / "out/heave.csv"), heave);
 }
 
+// 2 degrees of tilt at 4 s: 3 deg/s is plausible in rad/s, but for the accelerometer, which sees the tilt itself.
+TEST(Program, RefusesAGyroscopeInDegrees) {
+  const TemporaryDirectory temporary;
+  const double amplitude = 2 * kDegree, omega = 2 * std::numbers::pi / 4;
+  for (const double unit : {1.0, 1 / kDegree}) {
+    std::string rows = "utime,ax,ay,az,gx,gy,gz\n";
+    for (int row = 0; row < 6000; ++row) {
+      const double t = 0.02 * row, roll = amplitude * std::sin(omega * t),
+                   rate = unit * amplitude * omega * std::cos(omega * t),
+                   down = -9.8 + 0.5 * std::sin(omega * t + 1);
+      rows += std::to_string(20000 * row) + ",0," + std::to_string(down * std::sin(roll)) + "," +
+              std::to_string(down * std::cos(roll)) + "," + std::to_string(rate) + ",0,0\n";
+    }
+    temporary.write("tilting.csv", rows);
+    const Outcome outcome = run(temporary, "estimate tilting.csv --out out");
+    if (unit == 1) {
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      continue;
+    }
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.err,
+              "waverig: tilting.csv: by its gyroscope the unit turns at 2.2 rad/s (rms), by its accelerometer at "
+              "0.04; expected rates in rad/s about the accelerometer's axes (are they in degrees?)\n");
+  }
+}
+
 // One sample that is not a number is left out; it does not hide that the others are in g.
 TEST(Program, SeesTheUnitsOfALogWithASampleThatIsNoNumber) {
   const TemporaryDirectory temporary;
