@@ -50,9 +50,15 @@ FittedHeave heave_at(const std::vector<RegularWave>& waves, double t_s, std::siz
   result.inside = true;
   result.heave_m = -0.5 * height_m * std::sin(2 * pi * part);
   result.rate_mps = -0.5 * height_m * std::cos(2 * pi * part) * 2 * pi / span_s;
-  result.sigma_m = 0.5 * std::hypot(std::hypot(wave.noise_sigma_m, wave.calibration_sigma_m),
-                                    std::hypot(wave.tilt_sigma_m, wave.frequency_sigma_m));
-  result.flags = wave.flags;
+  const double sine_m = 0.5 * std::hypot(std::hypot(wave.noise_sigma_m, wave.calibration_sigma_m),
+                                         std::hypot(wave.tilt_sigma_m, wave.frequency_sigma_m));
+  // A corner bends what lies on the side where heights change, not what lies on the other.
+  const double corner_m = has_other ? std::min(std::max(wave.corner_sigma_m, other.corner_sigma_m),
+                                               0.25 * std::abs(other.height_m - wave.height_m))
+                                    : wave.corner_sigma_m;
+  const double shape_m = std::hypot(std::max(wave.shape_sigma_m, other.shape_sigma_m), corner_m);
+  result.sigma_m = std::hypot(sine_m, shape_m);
+  result.flags = wave.flags | (shape_m > sine_m ? flag::kSettling : 0);
   return result;
 }
 

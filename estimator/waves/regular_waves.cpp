@@ -15,8 +15,10 @@ using std::numbers::pi;
 
 constexpr std::size_t kNeighbours = 4;  // on either side: noise and mean force are told together
 constexpr std::size_t kEvenly = 4;      // waves that share one frequency run evenly
-constexpr double kClearMisfit = 1.5;      // times the noise power: about four standard deviations of twenty blocks
-constexpr double kContradiction = 4;    // standard deviations
+constexpr double kClearMisfit =
+    1.5;  // times the noise power: about four standard deviations of twenty blocks
+constexpr double kContradiction = 4;  // standard deviations
+constexpr double kCorner = 0.25;      // of a change of slope in amplitude, midway between two crossings
 
 // Calls visit(wave j) for k and its unbroken neighbours, as far as kNeighbours.
 template <class Visit>
@@ -162,6 +164,7 @@ void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves
   const double excess = wave.fit.misfit_mps2 * wave.fit.misfit_mps2 - noise * noise;
   const bool misfits = excess > kClearMisfit * noise * noise &&
                        excess > settings.settled_misfit * settings.settled_misfit * raw * raw;
+  if (misfits) wave.shape_sigma_m = std::sqrt(excess) / (w * w);
   bool settling = wave.timing.waves < 3 || misfits;
   const auto spacing_differs = [&](double spacing_s) {
     return std::abs(spacing_s / wave.timing.period_s - 1) > settings.settled_period + 3 * sigma / raw;
@@ -173,6 +176,18 @@ void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves
     settling |= spacing_differs(waves[k + 1].fit.down_crossing_s() - waves[k].fit.down_crossing_s());
   }
   if (settling) wave.flags |= flag::kSettling;
+}
+
+// Heave between two crossings has an amplitude that goes evenly from the one's to the other's: how far off it
+// is where the heights do not, beyond what their noise makes of them. Where a run begins or ends, what the
+// step to its neighbour leads to is not known at all.
+double corner_sigma_m(const std::vector<RegularWave>& waves, std::size_t k) {
+  const bool has_before = k > 0 && waves[k].follows, has_after = k + 1 < waves.size() && waves[k + 1].follows;
+  const double before_m = has_before ? waves[k].height_m - waves[k - 1].height_m : 0,
+               after_m = has_after ? waves[k + 1].height_m - waves[k].height_m : 0;
+  const double noise_m = kContradiction * std::sqrt(6.0) * waves[k].noise_sigma_m;
+  const double share = has_before && has_after ? kCorner : 1;
+  return 0.5 * share * std::max(0.0, std::abs(after_m - before_m) - noise_m);
 }
 
 }  // namespace
@@ -199,6 +214,7 @@ std::vector<RegularWave> regular_waves(const WaveSeries& series, double period_s
   std::vector<RegularWave> result = waves;
   for (std::size_t k = 0; k < waves.size(); ++k)
     tell_height(series, waves, k, settings, knowledge, result[k]);
+  for (std::size_t k = 0; k < waves.size(); ++k) result[k].corner_sigma_m = corner_sigma_m(result, k);
   return result;
 }
 

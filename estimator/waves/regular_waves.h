@@ -25,6 +25,8 @@ struct RegularWave {
   double noise_density = 0;  // pooled over the neighbours, m/s^2/sqrt(Hz)
   double height_m = 0;
   double noise_sigma_m = 0, calibration_sigma_m = 0, tilt_sigma_m = 0, frequency_sigma_m = 0;
+  // Of heave, beyond the height's: where the wave is no sine, and where heights do not change evenly.
+  double shape_sigma_m = 0, corner_sigma_m = 0;
   std::int32_t flags = 0;
 
   double begin_s() const { return timing.down_crossing_s - 0.5 * timing.period_s; }

@@ -388,6 +388,52 @@ TEST(Harmonic, HeaveIsTheTruthWithinTheNoiseOfAWave) {
               1e-12);
 }
 
+// Where the arm starts and, the record read backwards, where it stops, waves are of no one height: sigma and flag of
+// heave say so, and those of the waves between them are left as they are.
+TEST(Harmonic, SaysHowFarHeaveIsOffWhereTheArmStartsAndStops) {
+  for (const double period_s : {3.0, 6.0, 12.0}) {
+    for (const bool stops : {false, true}) {
+      SyntheticWaves waves = waves_of(period_s, 1, Swing::kLevel);
+      waves.rate_Hz = 100;
+      waves.rest_s = 15;
+      waves.ramp_waves = 2;
+      waves.phase_rad = 0;
+      waves.duration_s = 240;
+      SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, 4);
+      if (stops) {
+        const std::int64_t ends = record.samples.front().utime + record.samples.back().utime;
+        std::reverse(record.samples.begin(), record.samples.end());
+        std::reverse(record.heave_m.begin(), record.heave_m.end());
+        for (ImuSample& sample : record.samples) {
+          sample.utime = ends - sample.utime;
+          sample.w_NB_B = -sample.w_NB_B;
+        }
+        for (std::size_t i = 0; i < record.samples.size(); ++i)
+          record.samples[i].seq = static_cast<std::int64_t>(i);
+      }
+      const Collector found = measure(record, knowing(kFresh));
+      ASSERT_EQ(found.heaves.size(), record.samples.size());
+      double squares = 0, told = 0, settling = 0, worst_settled = 0;
+      for (std::size_t i = 0; i < found.heaves.size(); ++i) {
+        const HeaveSample& heave = found.heaves[i];
+        if (!std::isfinite(heave.heave_m)) continue;
+        const double z = std::abs(heave.heave_m - record.heave_m[i]) / heave.heave_sigma_m;
+        squares += z * z;
+        ++told;
+        if (heave.flags & flag::kSettling)
+          ++settling;
+        else
+          worst_settled = std::max(worst_settled, z);
+      }
+      const auto text = ::testing::Message() << period_s << " s, " << (stops ? "stops" : "starts");
+      EXPECT_LT(std::sqrt(squares / told), 1.5) << text;
+      EXPECT_LT(worst_settled, 5) << text;
+      EXPECT_GT(settling, 0) << text;
+      EXPECT_LT(settling * 0.01, 6 * period_s) << text;
+    }
+  }
+}
+
 // Where one wave ends and the next begins each has by its own fit.
 TEST(Harmonic, KnowsHeaveBetweenTwoWavesToo) {
   for (const std::uint64_t seed : {1, 2, 3}) {
