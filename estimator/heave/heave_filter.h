@@ -75,7 +75,6 @@ class HeaveFilter {
   double drifted_from(const HeaveFilter& before, double elapsed_s) const;
   const SeaModel& model() const { return model_; }
   int order() const { return model_.order(); }
-  const Eigen::Array2d& gyro_scale() const { return gyro_scale_; }  // relative error about body x and y
 
  private:
   static constexpr int kDrift = 5;

@@ -49,9 +49,9 @@ SeaAndNoise split_sea_from_noise(const Eigen::VectorXd& density, double dt_s, do
   const Eigen::Index bins = density.size();
   const double step = std::numbers::pi / static_cast<double>(bins - 1),
                df_hz = step / (2 * std::numbers::pi * dt_s);
-  Eigen::VectorXd noise(bins), level(bins);  // of unit q; and X in terms of q, lightly smoothed
-  for (Eigen::Index i = 0; i < bins; ++i)
-    noise[i] = std::pow(dt_s, 4) * (2 + std::cos(step * static_cast<double>(i))) / 3;
+  const Eigen::VectorXd noise =  // of unit q
+      noise_density_m2s(step * Eigen::ArrayXd::LinSpaced(bins, 0, static_cast<double>(bins - 1)), 1, dt_s);
+  Eigen::VectorXd level(bins);  // X in terms of q, lightly smoothed
   const Eigen::VectorXd raw = density.cwiseQuotient(noise);
   for (Eigen::Index i = 0; i < bins; ++i) {
     const Eigen::Index a = std::max<Eigen::Index>(i - 1, 1), b = std::min(i + 1, bins - 1);

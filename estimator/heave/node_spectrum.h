@@ -23,6 +23,11 @@ inline double second_difference_m(const PathIncrement& before, const PathIncreme
   return dt_s * before.speed_mps + after.path_m - before.path_m;
 }
 
+// Its density under white acceleration noise, at the angles w dt.
+inline Eigen::ArrayXd noise_density_m2s(const Eigen::ArrayXd& w_dt, double noise_m2ps3, double dt_s) {
+  return noise_m2ps3 * std::pow(dt_s, 4) * (2 + w_dt.cos()) / 3;
+}
+
 // Periodograms of up to `block` values under a Hann window, zero-padded to `block`.
 class Periodogram {
  public:

@@ -8,7 +8,10 @@
 // Value: double, or an Eigen array of what goes the same way.
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
+
+#include "motion/kinematics/frames.h"
 
 namespace waverig::estimator {
 
@@ -31,8 +34,7 @@ inline PathIncrement up(const LevelIncrement& increment) {
 template <class Value>
 class Integrator {
  public:
-  explicit Integrator(double node_interval_s)
-      : node_us_(static_cast<std::int64_t>(node_interval_s * 1e6 + 0.5)) {}
+  explicit Integrator(double node_interval_s) : node_us_(std::llround(node_interval_s / kMicrosecond)) {}
 
   // Begins anew with a node at utime: at the start and after a gap.
   void start(std::int64_t utime, const Value& a_mps2) {
@@ -51,7 +53,7 @@ class Integrator {
     double from_s = 0;
     while (utime - node_utime_ >= node_us_) {
       node_utime_ += node_us_;
-      const double to_s = 1e-6 * static_cast<double>(node_utime_ - last_utime_);
+      const double to_s = kMicrosecond * static_cast<double>(node_utime_ - last_utime_);
       advance(segment, from_s, to_s);
       const Increment<Value> whole = partial_;
       partial_ = {};
@@ -63,10 +65,8 @@ class Integrator {
   }
 
   const Increment<Value>& partial() const { return partial_; }
-  double since_node_s() const { return 1e-6 * static_cast<double>(last_utime_ - node_utime_); }
-  std::int64_t node_utime() const { return node_utime_; }
+  double since_node_s() const { return kMicrosecond * static_cast<double>(last_utime_ - node_utime_); }
   std::int64_t last_utime() const { return last_utime_; }
-  double node_interval_s() const { return 1e-6 * static_cast<double>(node_us_); }
 
  private:
   static constexpr double kAlike = 3;
@@ -75,7 +75,7 @@ class Integrator {
     double length_s;
   };
   Segment segment_to(std::int64_t utime, const Value& a_mps2) const {
-    const double h = 1e-6 * static_cast<double>(utime - last_utime_);
+    const double h = kMicrosecond * static_cast<double>(utime - last_utime_);
     const Value slope = (a_mps2 - last_a_mps2_) / h;
     // Newton's divided differences; a straight line while there are only two samples, and after an interval
     // of quite another length, whose secant would carry the noise of its samples far.

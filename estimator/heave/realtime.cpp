@@ -110,7 +110,7 @@ void Realtime::add(const ImuSample& raw, Output& output) {
     held.sample.flags |= flag::kSettling;
   locate(attitude, held);
   held_.push_back(held);
-  release(sample.utime - std::llround(settings_.fixed_lag_s * 1e6), output);
+  release(sample.utime - std::llround(settings_.fixed_lag_s / kMicrosecond), output);
 }
 
 void Realtime::finish(Output& output) {

@@ -124,8 +124,9 @@ void Record::add(const ImuSample& sample) {
     pending_flags_ |= verdict.flags & ~flag::kGap;
     return;
   }
-  if (verdict.anew) pieces_.push_back(samples_.size());
+  if (verdict.anew || pieces_.empty()) pieces_.push_back({samples_.size(), samples_.size()});
   samples_.push_back(sample);
+  ++pieces_.back().end;
   samples_.back().flags = verdict.flags | pending_flags_;
   pending_flags_ = 0;
 }
@@ -139,10 +140,8 @@ SmoothedRecord smooth_record(const Record& record, const SensorKnowledge& sensor
     smoothed.motion.follow(smoothed.attitude[i], 1.0 / static_cast<double>(i + 1));
   const auto pieces_with = [&](double interval_s) {
     std::vector<Piece> pieces;
-    for (std::size_t p = 0; p < record.pieces().size(); ++p) {
-      const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : samples.size();
-      pieces.push_back(integrate(record, smoothed, record.pieces()[p], end, interval_s, sensor.gravity_mps2));
-    }
+    for (const auto [begin, end] : record.pieces())
+      pieces.push_back(integrate(record, smoothed, begin, end, interval_s, sensor.gravity_mps2));
     return pieces;
   };
   std::vector<Piece> pieces = pieces_with(kFineInterval_s);
@@ -180,16 +179,15 @@ std::vector<Wave> tell(const Record& record, const SmoothedRecord& smoothed, con
   std::vector<Wave> waves;
   WaveCounter counter(sensor);
   const double systematic_m = std::sqrt(systematic_variance_m2(smoothed.sea, smoothed.motion, sensor));
-  auto piece = record.pieces().begin();
-  for (std::size_t i = 0; i < smoothed.heave.size(); ++i) {
-    if (piece != record.pieces().end() && *piece == i) {
-      counter.gap();
-      ++piece;
-    }
-    output.heave(smoothed.heave[i]);
-    if (const auto wave = counter.add(smoothed.heave[i], systematic_m, smoothed.attitude[i].tilt_sigma_rad)) {
-      output.wave(*wave);
-      waves.push_back(*wave);
+  for (const auto [begin, end] : record.pieces()) {
+    counter.gap();
+    for (std::size_t i = begin; i < end; ++i) {
+      const HeaveSample& heave = smoothed.heave[i];
+      output.heave(heave);
+      if (const auto wave = counter.add(heave, systematic_m, smoothed.attitude[i].tilt_sigma_rad)) {
+        output.wave(*wave);
+        waves.push_back(*wave);
+      }
     }
   }
   return waves;

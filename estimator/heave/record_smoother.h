@@ -16,13 +16,16 @@ class Record {
  public:
   void add(const ImuSample& sample);
   const std::vector<ImuSample>& samples() const { return samples_; }
-  // Where pieces without a gap begin, as indices of samples(); starts with 0 unless empty.
-  const std::vector<std::size_t>& pieces() const { return pieces_; }
+  // Pieces without a gap, as indices of samples(): they are all of it, in order.
+  struct Piece {
+    std::size_t begin, end;
+  };
+  const std::vector<Piece>& pieces() const { return pieces_; }
 
  private:
   SampleGuard guard_;
   std::vector<ImuSample> samples_;
-  std::vector<std::size_t> pieces_;
+  std::vector<Piece> pieces_;
   std::int32_t pending_flags_ = 0;
 };
 

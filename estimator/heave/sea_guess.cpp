@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimator/heave/node_spectrum.h"
+
 namespace waverig::estimator {
 namespace {
 
@@ -37,7 +39,7 @@ SeaGuess::SeaGuess(double dt_s, Eigen::Index bins, double accel_noise_m2ps3, dou
   const Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(bins, 0, std::numbers::pi);  // a node
   const double df_hz = w[1] / (2 * std::numbers::pi * dt_s);
   const Eigen::VectorXd turned = 2 - 2 * w.array().cos();
-  const Eigen::VectorXd noise = accel_noise_m2ps3 * std::pow(dt_s, 4) * (2 + w.array().cos()) / 3;
+  const Eigen::VectorXd noise = noise_density_m2s(w, accel_noise_m2ps3, dt_s);
   const double offset_m = offset_sigma_mps2 * dt_s * dt_s;
   Eigen::MatrixXd lags(kOrder + 1, bins);
   for (int j = 0; j <= kOrder; ++j) lags.row(j) = (j * w.array()).cos();

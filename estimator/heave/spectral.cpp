@@ -40,9 +40,7 @@ struct Nodes {
 
 std::vector<Nodes> nodes_of(const Record& record, const SmoothedRecord& smoothed, double interval_s) {
   std::vector<Nodes> pieces;
-  for (std::size_t p = 0; p < record.pieces().size(); ++p) {
-    const std::size_t begin = record.pieces()[p];
-    const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : record.samples().size();
+  for (const auto [begin, end] : record.pieces()) {
     Nodes nodes;
     PathIntegrator integrator(interval_s);
     PathIncrement last;
@@ -68,12 +66,9 @@ std::vector<Nodes> nodes_of(const Record& record, const SmoothedRecord& smoothed
 // Duration of the pieces without a gap.
 double seen_s(const Record& record) {
   double seen_s = 0;
-  for (std::size_t p = 0; p < record.pieces().size(); ++p) {
-    const std::size_t end = p + 1 < record.pieces().size() ? record.pieces()[p + 1] : record.samples().size();
+  for (const auto [begin, end] : record.pieces())
     seen_s +=
-        static_cast<double>(record.samples()[end - 1].utime - record.samples()[record.pieces()[p]].utime) *
-        kMicrosecond;
-  }
+        static_cast<double>(record.samples()[end - 1].utime - record.samples()[begin].utime) * kMicrosecond;
   return seen_s;
 }
 
