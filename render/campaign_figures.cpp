@@ -1,5 +1,6 @@
 #include "render/campaign_figures.h"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -165,6 +166,16 @@ RestRecords rest_of_repeats(const evaluation::CampaignResults& results, const ev
   return rest;
 }
 
+// A figure that an earlier call drew and this one has nothing to draw for would be shown beside the new ones.
+void remove_others(const std::vector<std::filesystem::path>& drawn, const std::filesystem::path& out) {
+  for (const FigureInfo& info : kFigureOrder) {
+    std::filesystem::path path = out / (std::string(info.stem) + ".png");
+    if (std::ranges::find(drawn, path) != drawn.end()) continue;
+    std::filesystem::remove(path);
+    std::filesystem::remove(path.replace_extension("svg"));
+  }
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::CampaignResults& results,
@@ -192,7 +203,9 @@ std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::Campa
                     save_rig_picture(*motion, shown_s, canvas, path, options.theme, options.provenance);
                   }});
   }
-  return drawn(tasks, out, options.threads);
+  const std::vector<std::filesystem::path> paths = drawn(tasks, out, options.threads);
+  remove_others(paths, out);
+  return paths;
 }
 
 }  // namespace waverig::render

@@ -93,7 +93,8 @@ std::vector<std::filesystem::path> write_figures(const std::vector<NamedFigure>&
                                                  const std::filesystem::path& out,
                                                  const FigureOptions& options);
 
-// Everything: out is made where it is missing. Throws UserError where a log is
+// Everything: out is made where it is missing; figures of kFigureOrder that an earlier call left there and of
+// which there is none now are removed. Throws UserError where a log is
 // missing or broken.
 std::vector<std::filesystem::path> draw_campaign_figures(const evaluation::CampaignResults& results,
                                                          const std::filesystem::path& runs,

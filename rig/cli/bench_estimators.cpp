@@ -180,7 +180,8 @@ void cover(const BenchEstimatorsArguments& arguments, int rigs) {
 }
 
 int bench_estimators(const BenchEstimatorsArguments& arguments) {
-  if (!arguments.out.empty()) make_out_directory(arguments.out);
+  std::optional<rig::DirectoryLock> lock;
+  if (!arguments.out.empty()) lock = hold_out_directory(arguments.out);
   const rig::CalibratedUnit calibrated = rig::calibrate(rig::read_campaign("", &arguments.seed).settings);
   const int records = arguments.seeds > 0 ? arguments.seeds : (arguments.full ? 3 : 1);
   fmt::print("{}", heading());

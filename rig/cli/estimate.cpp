@@ -242,7 +242,7 @@ int estimate(const EstimateArguments& arguments) {
   const auto method = estimator::make_method(arguments.method, settings);
 
   const fs::path out = arguments.out;
-  make_out_directory(arguments.out);
+  const rig::DirectoryLock lock = hold_out_directory(arguments.out);
   keep_signals();
   Collector collector(out / "heave.csv");
   SeaStates sea_states(arguments.method, settings);

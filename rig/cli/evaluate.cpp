@@ -79,7 +79,7 @@ int evaluate_heave(const EvaluateArguments& arguments) {
     summary.heave_gain = comparison.gain();
     summary.heave_lag_s = comparison.lag_s();
   }
-  make_out_directory(arguments.out);
+  const rig::DirectoryLock lock = hold_out_directory(arguments.out);
   AtomicFile waves_file(fs::path(arguments.out) / "waves.csv"),
       summary_file(fs::path(arguments.out) / "summary.json");
   waves_file.write(evaluation::waves_csv(waves));
@@ -232,7 +232,7 @@ int evaluate_campaign(const EvaluateArguments& arguments) {
   results.cells = evaluation::cells_of(results.runs);
   results.judged_version = kVersion;
   results.judged_command = command_of(arguments);
-  make_out_directory(out.string());
+  const rig::DirectoryLock lock = hold_out_directory(out.string());
   if (elsewhere) rig::take_campaign(directory, out);
   evaluation::write_results(out, results);
   fmt::print("{}", evaluation::results_csv(results.cells));

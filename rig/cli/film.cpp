@@ -43,8 +43,8 @@ int film(const FilmArguments& arguments) {
     throw UserError(fmt::format("--out {}: is {}; expected an MP4 file", arguments.out,
                                 fs::is_directory(out) ? "a folder" : "no file that another could replace"));
   if (out.has_extension() && out.extension() != ".mp4")
-    throw UserError(fmt::format("--out {}: the film is an MP4 file; expected a name that ends in .mp4",
-                                arguments.out));
+    throw UserError(
+        fmt::format("--out {}: the film is an MP4 file; expected a name that ends in .mp4", arguments.out));
   const evaluation::RunRecord run = evaluation::load_run(arguments.log);
   const render::RigMotion motion(run, arguments.method);
   render::FilmSettings settings = arguments.film;

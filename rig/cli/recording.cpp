@@ -116,12 +116,17 @@ void refuse_to_overwrite_results(const std::string& option, const fs::path& file
   }
 }
 
-void make_out_directory(const std::string& out) {
+rig::DirectoryLock hold_out_directory(const std::string& out) {
   std::error_code error;
   fs::create_directories(out, error);
   if (error)
     refuse_place(error, fmt::format("--out {}: {}; expected a directory that can be made and written", out,
                                     error.message()));
+  auto lock = rig::DirectoryLock::take(out);
+  if (!lock)
+    throw UserError(
+        fmt::format("--out {}: another waverig is at work in it; expected another directory", out));
+  return std::move(*lock);
 }
 
 std::vector<ImuSample> all_of(const SampleSource& source) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/types.h"
+#include "rig/campaign/directory_lock.h"
 
 namespace waverig::cli {
 
@@ -35,8 +36,10 @@ void refuse_to_overwrite(const std::vector<std::string>& inputs, const std::file
 void refuse_to_overwrite_results(const std::string& option, const std::filesystem::path& file,
                                  const std::vector<std::filesystem::path>& directories);
 
-// The folder that --out names, made where it is not there. Throws as refuse_place() of lcmtypes/disk.h.
-void make_out_directory(const std::string& out);
+// The folder that --out names, made where it is not there, and held: two programs at work in it would leave
+// a file of the one beside a file of the other. Throws as refuse_place() of lcmtypes/disk.h, and UserError
+// where another one holds it.
+[[nodiscard]] rig::DirectoryLock hold_out_directory(const std::string& out);
 
 std::vector<estimator::ImuSample> all_of(const SampleSource& source);
 

@@ -1,6 +1,6 @@
-// Turning: how fast the specific force turns in the body, as the gyroscope says and as the accelerometer sees.
-// A level that is carried through waves agrees with itself within their accelerations; degrees taken for
-// radians do not, by 57.
+// Turning: how fast the specific force turns in the body, as the gyroscope says and as the accelerometer
+// sees. A level that is carried through waves agrees with itself within their accelerations; degrees taken
+// for radians do not, by 57.
 #pragma once
 #include <cstdint>
 

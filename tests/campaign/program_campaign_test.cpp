@@ -76,8 +76,15 @@ TEST(Program, JudgesIntoADirectoryThatIsWholeByItself) {
   ASSERT_EQ(run(temporary, "evaluate done --out anew").status, 0);
   ASSERT_EQ(run(temporary, "evaluate done --out anew").status, 0) << "again";
   std::filesystem::remove_all(temporary / "done");
+  // A figure of an earlier call that these results have nothing for goes; what is somebody's own stays.
+  std::filesystem::create_directory(temporary / "anew/figures");
+  temporary.write("anew/figures/sea-states.png", "stale");
+  ASSERT_TRUE(std::filesystem::exists(temporary / "anew/figures/sea-states.png"));
+  temporary.write("anew/figures/mine.png", "own");
   const Outcome figures = run(temporary, "figures anew");
   EXPECT_EQ(figures.status, 0) << figures.err;
+  EXPECT_FALSE(std::filesystem::exists(temporary / "anew/figures/sea-states.png"));
+  EXPECT_TRUE(std::filesystem::exists(temporary / "anew/figures/mine.png"));
   EXPECT_NE(figures.out.find("anew/figures/spectra.png"), std::string::npos) << figures.out;  // of a log
   EXPECT_EQ(run(temporary, "report anew").status, 0);
   EXPECT_NE(bytes_of(temporary / "anew/report.html").find("<code>waverig evaluate done --out anew</code>"),

@@ -270,6 +270,22 @@ TEST(Program, RefusesAGyroscopeInDegrees) {
   }
 }
 
+// A heave.csv of the one beside a waves.csv of the other would be nobody's result.
+TEST(Program, WritesIntoNoFolderThatAnotherProgramIsAtWorkIn) {
+  const TemporaryDirectory temporary;
+  temporary.write("wave.csv", wave_record());
+  ASSERT_EQ(run(temporary, "estimate wave.csv --out out").status, 0);
+  const std::string summary = bytes_of(temporary / "out/summary.json");
+  for (const char* call : {"estimate wave.csv --method lee2014 --out out", "evaluate out/heave.csv --out out"}) {
+    const Outcome held =
+        run(temporary, std::string("--version >/dev/null; flock out " WAVERIG_PROGRAM " ") + call);
+    EXPECT_EQ(held.status, 2) << call;
+    EXPECT_EQ(held.err, "waverig: --out out: another waverig is at work in it; expected another directory\n");
+  }
+  EXPECT_EQ(bytes_of(temporary / "out/summary.json"), summary);
+  EXPECT_EQ(run(temporary, "estimate wave.csv --method lee2014 --out out").status, 0);
+}
+
 // One sample that is not a number is left out; it does not hide that the others are in g.
 TEST(Program, SeesTheUnitsOfALogWithASampleThatIsNoNumber) {
   const TemporaryDirectory temporary;
