@@ -104,6 +104,17 @@ struct Solution {
   double log_evidence = 0;  // of the record, but for a constant
 };
 
+// The normal equations in (d, d', b) at every node, a right side for each column of the paths.
+struct NormalEquations {
+  NormalEquations(Eigen::Index nodes, Eigen::Index order)
+      : A(3 * nodes, std::max<Eigen::Index>(3 * std::min(order, nodes - 1), 5)),
+        right(Eigen::MatrixX3d::Zero(3 * nodes, 3)) {}
+  BandedCholesky A;
+  Eigen::MatrixX3d right;
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();  // of the weighted values
+  double log_variances = 0;                           // of all residuals
+};
+
 class DriftProblem {
  public:
   DriftProblem(std::span<const LevelIncrement> increments, const SeaModel& model, const SensorDrift& sensor,
@@ -120,6 +131,9 @@ class DriftProblem {
   Eigen::Index nodes() const { return paths_.path_m.rows(); }
 
  private:
+  void add_sea(const Exceptions& exceptions, NormalEquations& equations) const;
+  void add_drift(const Exceptions& exceptions, NormalEquations& equations) const;
+  Solution solution_of(NormalEquations& equations) const;
   double disturbed_m2ps3(double noise_m2ps3, Eigen::Index k) const {
     const double disturbance =
         disturbance_m2ps3_.empty() ? 0.0 : disturbance_m2ps3_[static_cast<std::size_t>(k)];
@@ -172,19 +186,11 @@ Exceptions DriftProblem::find_rests() const {
           std::vector<bool>(count), std::vector<bool>(count)};
 }
 
-// The banded problem for each column of the paths; of these the leaks are taken as often as makes the whole
-// most probable.
-Solution DriftProblem::solve(const Exceptions& exceptions) const {
+// The sea's innovations: e(k) = (path - d)(k) - sum a_j (path - d)(k-j). At rest, the path's own.
+void DriftProblem::add_sea(const Exceptions& exceptions, NormalEquations& equations) const {
   const Eigen::Index order = model_.order();
-  const double dt = model_.interval_s;
-  BandedCholesky A(3 * nodes(), std::max<Eigen::Index>(3 * std::min(order, nodes() - 1), 5));
-  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(3 * nodes(), 3);
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-
-  // The sea's innovations: e(k) = (path - d)(k) - sum a_j (path - d)(k-j). At rest, the path's own.
   const Eigen::RowVectorXd as_before = Eigen::RowVectorXd::Ones(1);
-  const double still_m2 = std::pow(std::max(kStillRate * pace_.rate_mps * dt, kStill_m), 2);
-  double log_variances = 0;
+  const double still_m2 = std::pow(std::max(kStillRate * pace_.rate_mps * model_.interval_s, kStill_m), 2);
   std::vector<Eigen::Index> index;
   std::vector<double> row;
   for (Eigen::Index k = 0, begin = 0; k < nodes(); ++k) {
@@ -204,18 +210,23 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
       value -= a[j - 1] * paths_.path_m.row(k - j);
     }
     const double weight = 1 / (still ? still_m2 : predictors.variance[m].value());
-    log_variances -= std::log(weight);
-    add_row(A, right, index, row, value, weight);
-    squares += weight * value.transpose() * value;
+    equations.log_variances -= std::log(weight);
+    add_row(equations.A, equations.right, index, row, value, weight);
+    equations.squares += weight * value.transpose() * value;
   }
-  // The drift's steps.
+}
+
+// The drift's steps, and what is known of it at first.
+void DriftProblem::add_drift(const Exceptions& exceptions, NormalEquations& equations) const {
+  BandedCholesky& A = equations.A;
+  const double dt = model_.interval_s;
   const Eigen::Matrix<double, 3, 6> G = drift_step(dt);
   for (Eigen::Index k = 0; k + 1 < nodes(); ++k) {
     const double walk_m2ps5 =
         exceptions.offset[static_cast<std::size_t>(k)] ? kOffsetWalk_m2ps5 : model_.bias_walk_m2ps5;
     const Eigen::Matrix3d information =
         drift_information(disturbed_m2ps3(model_.accel_noise_m2ps3, k), walk_m2ps5, dt);
-    log_variances -= std::log(information.determinant());
+    equations.log_variances -= std::log(information.determinant());
     const Eigen::Matrix<double, 6, 6> W = G.transpose() * information * G;
     for (Eigen::Index i = 0; i < 6; ++i)
       for (Eigen::Index j = 0; j <= i; ++j) A.at(3 * k + i, 3 * k + j) += W(i, j);
@@ -224,15 +235,20 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
     A.at(3 * k, 3 * k) += 1 / (kPathVariance_m2 * static_cast<double>(nodes()));
   A.at(1, 1) += 1 / kSpeedVariance_m2ps2;
   A.at(2, 2) += 1 / kBiasVariance_m2ps4;
+}
 
+// The drift of each column of the paths; of these the leaks are taken as often as makes the whole most
+// probable.
+Solution DriftProblem::solution_of(NormalEquations& equations) const {
+  BandedCholesky& A = equations.A;
   if (!A.factorise()) throw std::logic_error("smooth_heave: the normal equations are not positive definite");
-  Eigen::MatrixX3d drifts(right.rows(), 3);
+  Eigen::MatrixX3d drifts(equations.right.rows(), 3);
   for (Eigen::Index column = 0; column < 3; ++column) {
-    Eigen::VectorXd u = right.col(column);
+    Eigen::VectorXd u = equations.right.col(column);
     A.solve(u);
     drifts.col(column) = u;
   }
-  const Eigen::Matrix3d least = squares - right.transpose() * drifts;
+  const Eigen::Matrix3d least = equations.squares - equations.right.transpose() * drifts;
   const double scale_variance = sensor_.gyro_scale_sigma * sensor_.gyro_scale_sigma;
   const Eigen::Matrix2d scale_known =
       Eigen::Matrix2d::Identity() + scale_variance * least.bottomRightCorner<2, 2>();
@@ -250,9 +266,17 @@ Solution DriftProblem::solve(const Exceptions& exceptions) const {
   solution.heave_rate_mps = paths_.speed_mps * taken - of_nodes(solution.drift, 1);
   solution.heave_variance_m2 =
       of_nodes(A.inverse_diagonal(), 0) + (leaks * scale_covariance).cwiseProduct(leaks).rowwise().sum();
-  solution.log_evidence = -0.5 * (least(0, 0) - scale.dot(least.bottomLeftCorner<2, 1>()) + log_variances +
-                                  A.log_determinant() + std::log(scale_known.determinant()));
+  solution.log_evidence =
+      -0.5 * (least(0, 0) - scale.dot(least.bottomLeftCorner<2, 1>()) + equations.log_variances +
+              A.log_determinant() + std::log(scale_known.determinant()));
   return solution;
+}
+
+Solution DriftProblem::solve(const Exceptions& exceptions) const {
+  NormalEquations equations(nodes(), model_.order());
+  add_sea(exceptions, equations);
+  add_drift(exceptions, equations);
+  return solution_of(equations);
 }
 
 void DriftProblem::keep_off_level(const Solution& solution, Rests& rests) const {

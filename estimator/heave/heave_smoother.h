@@ -11,9 +11,9 @@
 // found with it, s being the same over the record.
 //
 // A body at rest (rests.h) stays where it is, at whatever level, and the sea after it knows nothing of what
-// was before; where neither a rest's level stands out nor the mean of all, it is taken to lie at the sea's
-// mean level, with the uncertainty of one that is not known. While the body is set in motion or brought to
-// rest the sea is any sea, one slower than any wave included.
+// was before; where neither a rest's level stands out nor, of rests that agree on one, the mean of all, it is
+// taken to lie at the sea's mean level, with the uncertainty of one that is not known. While the body is set
+// in motion or brought to rest the sea is any sea, one slower than any wave included.
 //
 // Where that drift gains speed that noise does not give it, something else happened than the model says: the
 // body was set in motion or brought to rest, and from one level to another, as no sea of that spectrum does;
