@@ -1,6 +1,5 @@
 #include "estimator/attitude/attitude_filter.h"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "estimator/sample_guard.h"
@@ -23,36 +22,41 @@ double unseen_speed_mps(double dt_s) {
 }
 
 TiltChain::TiltChain(const AttitudeSettings& s) {
-  P = Eigen::Vector4d(square(kStartPath_m), square(kStartSpeed_mps), square(s.start_tilt_sigma_rad),
-                      square(s.gyro_bias_sigma_radps))
+  P = TiltState(square(kStartPath_m), square(kStartSpeed_mps), square(s.start_tilt_sigma_rad),
+                square(s.gyro_bias_sigma_radps))
           .asDiagonal();
 }
 
-Eigen::Matrix4d TiltChain::transition(double t, double g) {
-  Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
+Eigen::Matrix4cd TiltChain::transition(double t, std::complex<double> turn, double g) {
+  Eigen::Matrix4cd F = Eigen::Matrix4cd::Identity();
   F(0, 1) = t;
   F(0, 2) = g * t * t / 2;
   F(0, 3) = g * t * t * t / 6;
   F(1, 2) = g * t;
   F(1, 3) = g * t * t / 2;
   F(2, 3) = t;
+  F(3, 3) = turn;
   return F;
 }
 
-Eigen::Matrix4d TiltChain::predict(const AttitudeSettings& s, double dt_s) {
-  const Eigen::Matrix4d F = transition(dt_s, s.gravity_mps2);
-  P = F * P * F.transpose();
+void TiltChain::predict(const AttitudeSettings& s, double dt_s, std::complex<double> turn) {
+  const Eigen::Matrix4cd F = transition(dt_s, turn, s.gravity_mps2);
+  P = F * P * F.adjoint();
   P(1, 1) += square(s.accel_noise_mps2_rthz) / 2 * dt_s;  // one-sided density to two-sided
   P(2, 2) += square(s.gyro_noise_radps_rthz) / 2 * dt_s;
   P(3, 3) += square(s.gyro_bias_walk_radps_rts) * dt_s;
-  return F;
 }
 
-Eigen::Vector4d TiltChain::update(const AttitudeSettings& s, double dt_s) {
-  const Eigen::Vector4d gain = P.col(0) / (P(0, 0) + s.motion_m2s / dt_s);
+TiltState TiltChain::update(const AttitudeSettings& s, double dt_s) {
+  const TiltState gain = P.col(0) / (P(0, 0).real() + s.motion_m2s / dt_s);
   P -= gain * P.row(0).eval();
-  P = (0.5 * (P + P.transpose())).eval();
+  P = (0.5 * (P + P.adjoint())).eval();
   return gain;
+}
+
+std::complex<double> heading_turn(const Quaterniond& from_q_NB, const Quaterniond& to_q_NB) {
+  const Quaterniond turned_N = to_q_NB * from_q_NB.conjugate();
+  return std::polar(1.0, 2 * std::atan2(turned_N.z(), turned_N.w()));
 }
 
 AttitudeFilter::AttitudeFilter(const AttitudeSettings& settings) : settings_(settings), chain_(settings) {}
@@ -74,12 +78,12 @@ void AttitudeFilter::level(const Vector3d& f_B) {
 
 void AttitudeFilter::restart(const ImuSample& sample) {
   if (!knows_attitude_) level(sample.f_B);
-  const double bias_variance = chain_.P(3, 3);
+  const std::complex<double> bias_variance = chain_.P(3, 3);
   chain_ = TiltChain(settings_);
   if (started_) chain_.P(3, 3) = bias_variance;  // a gap does not unlearn the gyro's bias
-  position_N_.setZero();
-  velocity_N_.setZero();
+  position_N_ = velocity_N_ = 0;
   since_correction_s_ = 0;
+  corrected_q_NB_ = state_.q_NB;
   restarted_ = true;
   correction_.restart_utime = sample.utime;
   started_ = true;
@@ -101,7 +105,8 @@ const AttitudeSample& AttitudeFilter::update(const ImuSample& sample) {
     const Vector3d turn_B = 0.5 * dt * (w_B + previous_w_B_);
     state_.q_NB = state_.q_NB * quaternion_exp(turn_B);
     const Vector3d a_N = state_.q_NB * sample.f_B + g_N;
-    const Eigen::Vector2d mean_a_N = 0.5 * (a_N + state_.a_N).head<2>();
+    const Vector3d both_N = 0.5 * (a_N + state_.a_N);
+    const std::complex<double> mean_a_N(both_N.x(), both_N.y());
     position_N_ += dt * velocity_N_ + 0.5 * dt * dt * mean_a_N;
     velocity_N_ += dt * mean_a_N;
     state_.a_N = a_N;
@@ -119,26 +124,27 @@ const AttitudeSample& AttitudeFilter::update(const ImuSample& sample) {
   previous_w_B_ = sample.w_NB_B - state_.gyro_bias_B;
   state_.utime = sample.utime;
   const double calibration = settings_.accel_bias_sigma_mps2 / settings_.gravity_mps2;
-  const double variance = chain_.P(2, 2);
+  const double variance = chain_.P(2, 2).real();
   state_.tilt_sigma_rad = std::sqrt(variance + square(calibration));
   state_.settled = variance < square(kSettledTilt_rad);
   return state_;
 }
 
 void AttitudeFilter::correct(std::int64_t utime, double dt_s) {
-  correction_.transition = chain_.predict(settings_, dt_s);
+  correction_.dt_s = dt_s;
+  correction_.turn = heading_turn(corrected_q_NB_, state_.q_NB);
+  chain_.predict(settings_, dt_s, correction_.turn);
   correction_.predicted_P = chain_.P;
-  const Eigen::Vector4d gain = chain_.update(settings_, dt_s);
+  const TiltState gain = chain_.update(settings_, dt_s);
   correction_.updated_P = chain_.P;
-  const Eigen::Matrix<double, 4, 2> change = gain * (-position_N_.transpose());
-  position_N_ += change.row(0).transpose();
-  velocity_N_ += change.row(1).transpose();
-  const Vector3d phi_N = tilt_rotation_N(change(2, 0), change(2, 1));
-  state_.q_NB = (quaternion_exp(phi_N) * state_.q_NB).normalized();
-  state_.gyro_bias_B += state_.q_NB.conjugate() * bias_change_N(change(3, 0), change(3, 1));
+  const TiltState change = -position_N_ * gain;
+  position_N_ += change[0];
+  velocity_N_ += change[1];
+  state_.q_NB = (quaternion_exp(tilt_rotation_N(change)) * state_.q_NB).normalized();
+  state_.gyro_bias_B += state_.q_NB.conjugate() * bias_change_N(change);
+  corrected_q_NB_ = state_.q_NB;
   correction_.utime = utime;
   correction_.applied = change;
-  correction_.q_NB = state_.q_NB;
   correction_.restarted = restarted_;
   restarted_ = false;
   corrected_ = true;

@@ -5,15 +5,17 @@
 // path run away with g theta t^2 / 2, a wave does not. The pseudo-measurement "the horizontal path is about
 // zero", white of density motion_m2s, drives per horizontal axis the chain of errors
 //
-//     dp' = dv,   dv' = g theta + n_a,   theta' = beta + n_g,   beta' = n_b            (beta: gyro bias
-//     error, rad/s)
+//     dp' = dv,   dv' = g theta + n_a,   theta' = beta + n_g,   beta' = i psi' beta + n_b
+//                                                    (beta: gyro bias error, rad/s; psi: heading)
 //
 // so wave accelerations reach the tilt only through the third power of (corner / wave frequency), while the
-// gyro bias is learned within about half a minute. Both axes share one 4x4 covariance: the chain is the same
-// for any heading. Heading itself starts at zero and drifts: without a magnetometer N is a level frame that
-// turns slowly.
+// gyro bias is learned within about half a minute. Both axes are one complex number, north + i east, with one
+// Hermitian 4x4 covariance. The bias stays with the body: in N it turns with the heading, and a body that
+// turns steadily, once in half a minute, would make a filter unstable that did not know it. Heading itself
+// starts at zero and drifts: without a magnetometer N is a level frame that turns slowly.
 #pragma once
 #include <Eigen/Core>
+#include <complex>
 #include <cstdint>
 
 #include "estimator/types.h"
@@ -45,25 +47,30 @@ struct AttitudeSample {
 // in a short sea, at most that sea's motion. Standard uncertainty.
 double unseen_speed_mps(double dt_s);
 
-// The chain's covariance and its step, shared by filter and smoother. State (p, v, theta, beta).
+// The chain's covariance and its step, shared by filter and smoother. State (p, v, theta, beta), each north +
+// i east.
+using TiltState = Eigen::Vector4cd;
 struct TiltChain {
-  Eigen::Matrix4d P;
+  Eigen::Matrix4cd P;  // Hermitian
   explicit TiltChain(const AttitudeSettings& settings);
-  static Eigen::Matrix4d transition(double dt_s, double g);
-  Eigen::Matrix4d predict(const AttitudeSettings& settings, double dt_s);  // returns the transition
-  Eigen::Vector4d update(const AttitudeSettings& settings,
-                         double dt_s);  // returns the gain for the residual 0 - p
+  // turn: exp(i psi) of the heading's change psi over dt_s.
+  static Eigen::Matrix4cd transition(double dt_s, std::complex<double> turn, double g);
+  void predict(const AttitudeSettings& settings, double dt_s, std::complex<double> turn);
+  TiltState update(const AttitudeSettings& settings,
+                   double dt_s);  // returns the gain for the residual 0 - p
 };
+// Of the rotation between two attitudes of a body, its turn about the vertical.
+std::complex<double> heading_turn(const Quaterniond& from_q_NB, const Quaterniond& to_q_NB);
 
 // What one correction did: kept by the smoother.
 struct AttitudeCorrection {
   std::int64_t utime = 0;
-  Eigen::Matrix<double, 4, 2> applied =
-      Eigen::Matrix<double, 4, 2>::Zero();  // chain states of north and east
-  Eigen::Matrix4d transition, predicted_P, updated_P;
-  Quaterniond q_NB = Quaterniond::Identity();  // after the correction
-  bool restarted = false;                      // levelled anew since the correction before: no memory across
-  std::int64_t restart_utime = 0;              // when
+  TiltState applied = TiltState::Zero();
+  double dt_s = 0;  // since the correction before
+  std::complex<double> turn = 1;
+  Eigen::Matrix4cd predicted_P, updated_P;
+  bool restarted = false;          // levelled anew since the correction before: no memory across
+  std::int64_t restart_utime = 0;  // when
 };
 
 class AttitudeFilter {
@@ -90,18 +97,18 @@ class AttitudeFilter {
   TiltChain chain_;
   AttitudeSample state_;
   AttitudeCorrection correction_;
+  Quaterniond corrected_q_NB_ = Quaterniond::Identity();  // at the last correction or start
   Vector3d previous_w_B_ = Vector3d::Zero();
-  Eigen::Vector2d position_N_ = Eigen::Vector2d::Zero(), velocity_N_ = Eigen::Vector2d::Zero();
+  std::complex<double> position_N_ = 0, velocity_N_ = 0;  // north + i east
   double since_correction_s_ = 0, usual_interval_s_ = 0;
   bool started_ = false, corrected_ = false, restarted_ = false, knows_attitude_ = false;
 };
 
-// The chain's tilt (rad, about north and east) as a rotation vector in N: a_N errs by g theta along its own
-// axis.
-inline Vector3d tilt_rotation_N(double theta_north, double theta_east) {
-  return {theta_east, -theta_north, 0.0};
+// The chain's tilt (rad) as a rotation vector in N: a_N errs by g theta along its own axis.
+inline Vector3d tilt_rotation_N(const TiltState& change) {
+  return {change[2].imag(), -change[2].real(), 0.0};
 }
 // The chain's bias error beta as an addition to gyro_bias_B, seen in N.
-inline Vector3d bias_change_N(double beta_north, double beta_east) { return {-beta_east, beta_north, 0.0}; }
+inline Vector3d bias_change_N(const TiltState& change) { return {-change[3].imag(), change[3].real(), 0.0}; }
 
 }  // namespace waverig::estimator

@@ -102,6 +102,21 @@ inline SeaRecord sea_record(const SeaCase& c, std::uint64_t seed) {
   });
 }
 
+// The same on a body that turns about its own vertical, once in turn_s.
+inline SeaRecord turning_record(const SeaCase& c, double turn_s, std::uint64_t seed) {
+  motion::FloatSettings body;
+  body.slope_following = c.slope_following;
+  motion::SeaMotion sea(motion::draw_components(sea_settings(c.tp_s, c.hm0_m, seed)), body);
+  const Vector3d rate_B(0, 0, 2 * kPi / turn_s);
+  return recorded(c, seed, [=](std::int64_t utime) mutable {
+    BodyMotion m = sea.at(utime);
+    const Quaterniond turned = quaternion_exp(static_cast<double>(utime) * kMicrosecond * rate_B);
+    m.w_NB_B = turned.conjugate() * m.w_NB_B + rate_B;
+    m.q_NB = m.q_NB * turned;
+    return m;
+  });
+}
+
 // From 0 to 1, smoothly, with its derivatives by time.
 struct Ramp {
   double w, dw, ddw;
