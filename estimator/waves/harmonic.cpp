@@ -58,7 +58,7 @@ FittedHeave heave_at(const std::vector<RegularWave>& waves, double t_s, std::siz
                                     : wave.corner_sigma_m;
   const double shape_m = std::hypot(std::max(wave.shape_sigma_m, other.shape_sigma_m), corner_m);
   result.sigma_m = std::hypot(sine_m, shape_m);
-  result.flags = wave.flags | (shape_m > sine_m ? flag::kSettling : 0);
+  result.flags = wave.flags | (other.flags & flag::kSettling) | (corner_m > sine_m ? flag::kSettling : 0);
   return result;
 }
 

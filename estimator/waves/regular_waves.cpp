@@ -164,7 +164,9 @@ void tell_height(const WaveSeries& series, const std::vector<RegularWave>& waves
   const double excess = wave.fit.misfit_mps2 * wave.fit.misfit_mps2 - noise * noise;
   const bool misfits = excess > kClearMisfit * noise * noise &&
                        excess > settings.settled_misfit * settings.settled_misfit * raw * raw;
-  if (misfits) wave.shape_sigma_m = std::sqrt(excess) / (w * w);
+  // A part at twice the frequency, beyond what noise makes of it, leaves the height as it is, but not heave.
+  const double second2 = std::max(0.0, square(wave.fit.second_mps2) - square(kContradiction * sigma));
+  wave.shape_sigma_m = std::sqrt((misfits ? excess : 0) + second2 / 32) / (w * w);
   bool settling = wave.timing.waves < 3 || misfits;
   const auto spacing_differs = [&](double spacing_s) {
     return std::abs(spacing_s / wave.timing.period_s - 1) > settings.settled_period + 3 * sigma / raw;

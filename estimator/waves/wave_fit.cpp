@@ -48,6 +48,7 @@ WaveFit fit_wave(const WaveSeries& series, double begin_s, double end_s, double 
   if (!x.allFinite()) return fit;
   fit.cos_mps2 = x(0);
   fit.sin_mps2 = x(1);
+  fit.second_mps2 = std::hypot(x(2), x(3));
   fit.offset_mps2 = x(4);
   // White noise of one-sided density d has variance d^2 / (2 dt) per sample.
   const double dt_s = static_cast<double>(range.size()) * series.bin_s() / count;

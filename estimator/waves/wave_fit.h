@@ -11,6 +11,7 @@ struct WaveFit {
   bool valid = false;
   double begin_s = 0, end_s = 0, middle_s = 0, omega_radps = 0;
   double cos_mps2 = 0, sin_mps2 = 0;  // a = cos_ cos(w tau) + sin_ sin(w tau), tau from the middle
+  double second_mps2 = 0;             // amplitude at twice the frequency
   double offset_mps2 = 0;             // at the middle
   double noise_density = 0;      // one-sided amplitude density of the residual near the wave, m/s^2/sqrt(Hz)
   double misfit_mps2 = 0;        // rms of the residual in blocks of a twenty-fourth of the wave

@@ -434,6 +434,33 @@ TEST(Harmonic, SaysHowFarHeaveIsOffWhereTheArmStartsAndStops) {
   }
 }
 
+// Stokes' second harmonic leaves crest to trough as it is; heave, a sine, is off by it and says so.
+TEST(Harmonic, StatesWhatASecondHarmonicAddsToHeave) {
+  SyntheticWaves waves = waves_of(6, 1, Swing::kLevel);
+  waves.rate_Hz = 100;
+  waves.mounting = {};
+  SyntheticRecord record = testing::synthesize(waves, SensorErrors{}, 2);
+  const double second_m = 0.05, w = 2 * kPi / waves.period_s;
+  for (std::size_t i = 0; i < record.samples.size(); ++i) {
+    const double t_s = static_cast<double>(record.samples[i].utime - record.samples.front().utime) * kMicrosecond;
+    const double up_m = second_m * std::cos(2 * (w * t_s + waves.phase_rad));
+    record.heave_m[i] += up_m;
+    record.samples[i].f_B.z() += 4 * w * w * up_m;
+  }
+  const Collector found = measure(record, knowing(kFresh));
+  const Mean mean = mean_of(found.waves);
+  EXPECT_NEAR(mean.height_m, waves.height_m, 3 * mean.sigma_m);
+  double squares = 0, variance = 0, n = 0;
+  for (std::size_t i = 1000; i + 1400 < found.heaves.size(); ++i) {
+    EXPECT_FALSE(found.heaves[i].flags & flag::kSettling);
+    squares += std::pow(found.heaves[i].heave_m - record.heave_m[i], 2);
+    variance += std::pow(found.heaves[i].heave_sigma_m, 2);
+    n += 1;
+  }
+  EXPECT_NEAR(std::sqrt(squares / n), second_m / std::sqrt(2), 0.002);
+  EXPECT_NEAR(std::sqrt(variance / n), std::sqrt(squares / n), 0.002);
+}
+
 // Where one wave ends and the next begins each has by its own fit.
 TEST(Harmonic, KnowsHeaveBetweenTwoWavesToo) {
   for (const std::uint64_t seed : {1, 2, 3}) {
