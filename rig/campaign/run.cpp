@@ -18,14 +18,20 @@
 
 namespace waverig::rig {
 
+ArmPlacement arm_placement(const CampaignSettings& campaign, const RunPlan& plan) {
+  return {plan.setting.height_m / 2,
+          campaign.arm.azimuth_rad + plan.repeat * campaign.sweep.turn_per_repeat_rad};
+}
+
 SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const CampaignUnit& unit,
                                   const RunPlan& plan) {
   SimulatedRigSettings rig{.drive = campaign.drive, .arm = campaign.arm, .unit = unit.settings};
   rig.drive.counts_per_turn = campaign.axis.counts_per_turn;
   rig.drive.seed = plan.seed;
-  rig.radius_m = plan.setting.height_m / 2;
+  const ArmPlacement placement = arm_placement(campaign, plan);
+  rig.radius_m = placement.radius_m;
   rig.noise_seed = plan.seed;
-  rig.arm.azimuth_rad += plan.repeat * campaign.sweep.turn_per_repeat_rad;
+  rig.arm.azimuth_rad = placement.azimuth_rad;
   if (rig.unit.magnetometer) rig.unit.magnetometer->motor = motor_field(campaign, rig.arm.azimuth_rad);
   return rig;
 }

@@ -8,6 +8,7 @@
 #include "estimator/evaluation/run_judge.h"
 #include "rig/campaign/plan.h"
 #include "rig/campaign/settings.h"
+#include "rig/nodes/encoder_truth.h"
 #include "rig/nodes/run_announcer.h"
 #include "rig/nodes/simulated_rig.h"
 
@@ -34,6 +35,7 @@ SimulatedRigSettings rig_settings(const CampaignSettings& campaign, const Campai
                                   const RunPlan& plan);
 motion::RotationProfile profile_of(const CampaignSettings& campaign, const RunPlan& plan);
 OrderedRun ordered_run(const RunPlan& plan);
+ArmPlacement arm_placement(const CampaignSettings& campaign, const RunPlan& plan);
 Acquisition acquisition_of(const CampaignUnit& unit);
 
 // How the judge of a run of this campaign is set, embedded or from its log.

@@ -17,15 +17,17 @@ Example: a whole session on the simulated rig, calibration.json from a sweep of 
 
   RUN=T06.00s_H060.0cm_r1
   waverig node rig-sim rig/default.toml --run $RUN --serial-link /tmp/sensor & sleep 2
-  waverig node acquisition rig/default.toml --serial /tmp/sensor --calibration results/default/calibration.json &
-  waverig node estimator harmonic --campaign rig/default.toml --one-record &
-  waverig node estimator lee2014 --campaign rig/default.toml --one-record &
+  CALIBRATION="--calibration results/default/calibration.json"
+  waverig node acquisition rig/default.toml --serial /tmp/sensor $CALIBRATION &
+  waverig node estimator harmonic --campaign rig/default.toml $CALIBRATION --one-record &
+  waverig node estimator lee2014 --campaign rig/default.toml $CALIBRATION --one-record &
   waverig node recorder --out $RUN.lcm --one-record &
   waverig node evaluator --campaign rig/default.toml --run $RUN --out results/$RUN & sleep 2
   waverig node motion rig/default.toml --run $RUN --drive tcp://127.0.0.1:5020
   wait %3 %4 %5 %6; kill %2; wait %2; kill %1
 
-With a real rig, leave out rig-sim and give motion its drive (rtu:/dev/ttyUSB0) and acquisition its serial port.
+With a real rig, leave out rig-sim; give motion its drive (rtu:/dev/ttyUSB0) and --tell-truth, acquisition its
+serial port.
 A method of your own is any program that publishes heave_t on WAVERIG_HEAVE_<name>.)";
 
 // A node's subcommand with what all nodes have; run is called with the arguments when it is chosen.
@@ -96,12 +98,16 @@ void add_motion(CLI::App& nodes, Command& chosen) {
       ->add_option("--response-timeout-ms", a->response_timeout_ms, "How long the drive may take to answer")
       ->check(between(1.0, 5000.0))
       ->capture_default_str();
+  command->add_flag("--tell-truth", a->tells_truth,
+                    "Publish where the encoder says that the arm's tip is as the truth: on a real rig; the "
+                    "simulated one tells its own");
   add_speed(*command, a->speed);
   command->footer(
       "Exit status 1 where an alarm or a signal stopped the run before its end.\n"
       "Examples:\n"
       "  waverig node motion rig/default.toml --run T06.00s_H060.0cm_r1 --drive tcp://127.0.0.1:5020\n"
-      "  waverig node motion rig/default.toml --run T06.00s_H060.0cm_r1 --drive rtu:/dev/ttyUSB0");
+      "  waverig node motion rig/default.toml --run T06.00s_H060.0cm_r1 --drive rtu:/dev/ttyUSB0 "
+      "--tell-truth");
 }
 
 void add_acquisition(CLI::App& nodes, Command& chosen) {
@@ -126,14 +132,17 @@ void add_estimator(CLI::App& nodes, Command& chosen) {
       add(nodes, "estimator", "One method, from samples to heave and waves", chosen, a, run_estimator);
   command->add_option("method", a->method, "Name of the method, e.g. harmonic")->required();
   command->add_option("--campaign", a->campaign, "For what is known of sensor and place");
-  command->add_option("--calibration", a->calibration,
-                      "calibration.json, for what it says of its own uncertainty");
+  command->add_option(
+      "--calibration", a->calibration,
+      "calibration.json, for what it says of its own uncertainty; without it a default sensor's "
+      "is taken");
   command->add_option("--lag-s", a->lag_s, "realtime: tell heave so much later, by what came meanwhile")
       ->check(not_negative());
   command->add_flag("--one-record", a->one_record, "End after one record");
   command->footer(
       "Examples:\n"
-      "  waverig node estimator harmonic --campaign rig/default.toml --one-record\n"
+      "  waverig node estimator harmonic --campaign rig/default.toml --calibration "
+      "results/default/calibration.json --one-record\n"
       "  waverig node estimator realtime --calibration results/default/calibration.json --lag-s 2");
 }
 

@@ -34,6 +34,7 @@ void MotionNode::cycle(std::int64_t utime) {
   const bool cut_short = alarmed || stop_wanted_;
   if (started_ && !finished_) announce_.phase(utime, cut_short ? Phase::kStopped : announced_phase());
   publish_status(utime);
+  if (truth_) truth_->tell(utime, status.measured_rad);
   if (finished_) return;
   if (cut_short)
     publish_alarm(utime, alarmed ? controller_.alarm_message() : "stopped before the run's end, as told");

@@ -3,11 +3,13 @@
 // time.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "lcmtypes/bus.h"
 #include "motion/axis_controller.h"
+#include "rig/nodes/encoder_truth.h"
 #include "rig/nodes/run_announcer.h"
 
 namespace waverig::rig {
@@ -17,6 +19,10 @@ class MotionNode {
   // drive must outlive the node, which leaves it stopped on every way out.
   MotionNode(Bus& bus, motion::Drive& drive, const motion::AxisSettings& axis,
              const motion::RotationProfile& profile, const OrderedRun& ordered);
+
+  // Every cycle tells from now on what the encoder says that the arm did: of a real rig, that has nobody else
+  // to tell it.
+  void tell_truth(const ArmPlacement& arm) { truth_.emplace(bus_, arm); }
 
   void cycle(std::int64_t utime);
   // The record has ended: done, alarmed or stopped. Whoever has the time goes on with cycle() until
@@ -42,6 +48,7 @@ class MotionNode {
   motion::AxisController controller_;
   motion::RotationProfile profile_;
   RunAnnouncer announce_;
+  std::optional<EncoderTruth> truth_;
   motion::AxisState published_state_ = motion::AxisState::kIdle;
   std::int64_t axis_seq_ = 0, alarm_seq_ = 0, next_status_utime_ = 0;
   bool started_ = false, finished_ = false, stop_wanted_ = false;

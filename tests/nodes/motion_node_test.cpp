@@ -11,6 +11,7 @@
 #include <waverig/axis_t.hpp>
 #include <waverig/record_t.hpp>
 #include <waverig/run_t.hpp>
+#include <waverig/truth_t.hpp>
 
 #include "lcmtypes/channels.h"
 #include "motion/simulated_drive.h"
@@ -111,6 +112,36 @@ TEST(MotionNode, AWholeRunIsNotCutShort) {
   EXPECT_TRUE(watch.ended());
   EXPECT_EQ(watch.stopped(), "");
   EXPECT_TRUE(laboratory.node().at_rest());
+}
+
+// What a real rig has of truth: against the shaft that the encoder sits on.
+TEST(MotionNode, TellsByItsEncoderWhatTheArmDid) {
+  Laboratory laboratory;
+  std::vector<truth_t> truth;
+  std::vector<double> true_angle_rad;
+  laboratory.bus().subscribe<truth_t>(channel::kTruth, [&](const truth_t& m) {
+    truth.push_back(m);
+    true_angle_rad.push_back(laboratory.drive().shaft().angle_rad);
+  });
+  laboratory.run_until(0.5);
+  EXPECT_TRUE(truth.empty());
+  const double radius_m = 0.5, azimuth_rad = 0.3;
+  laboratory.node().tell_truth({radius_m, azimuth_rad});
+  laboratory.run_until(45);
+  ASSERT_GT(truth.size(), 4400U);
+  double highest_m = 0;
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    EXPECT_EQ(truth[i].utime - truth[i - 1].utime, kPeriod_us);
+    EXPECT_EQ(truth[i].seq, truth[i - 1].seq + 1);
+    // One control period of a turn of 4 s is 0.9 degrees.
+    EXPECT_NEAR(truth[i].heave_m, radius_m * std::sin(true_angle_rad[i]), radius_m * 0.016);
+    EXPECT_NEAR(std::hypot(truth[i].north_m, truth[i].east_m), radius_m * std::abs(std::cos(true_angle_rad[i])),
+                radius_m * 0.016);
+    EXPECT_NEAR(truth[i].heave_rate_mps,
+                (truth[i].heave_m - truth[i - 1].heave_m) / (1e-6 * static_cast<double>(kPeriod_us)), 0.02);
+    highest_m = std::max(highest_m, truth[i].heave_m);
+  }
+  EXPECT_NEAR(highest_m, radius_m, 1e-4);
 }
 
 TEST(MotionNode, TellsTheBusOfAnAlarmAndOfItsReason) {

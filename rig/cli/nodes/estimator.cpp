@@ -31,6 +31,9 @@ int run_estimator(const EstimatorArguments& arguments) {
   Requests requests;
   Bus bus = open_bus(arguments.bus);
   const rig::EstimatorNode node(bus, arguments.method, settings);
+  if (arguments.calibration.empty())
+    fmt::print(stderr, "estimator {}: no --calibration: uncertainties are a default sensor's\n",
+               arguments.method);
   fmt::print(stderr, "estimator {}: ready\n", arguments.method);
 
   std::int64_t reported = 0;

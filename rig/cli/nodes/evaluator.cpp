@@ -1,12 +1,15 @@
 // waverig node evaluator: hears truth, setting and every method on the bus, and judges one run.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "estimator/evaluation/results_files.h"
 #include "estimator/evaluation/results_io.h"
 #include "estimator/method.h"
+#include "lcmtypes/channels.h"
 #include "lcmtypes/error.h"
 #include "rig/campaign/sweep.h"
 #include "rig/cli/nodes/addresses.h"
@@ -83,6 +86,13 @@ int run_evaluator(const EvaluatorArguments& arguments) {
   results.complete = true;
   results.runs = node.finish();
   results.cells = evaluation::cells_of(results.runs);
+  if (std::ranges::none_of(results.cells, [](const evaluation::CellResult& cell) {
+        return std::isfinite(cell.statistics.mean_true_height_m) || std::isfinite(cell.heave_rmse_m);
+      }))
+    fmt::print(stderr,
+               "evaluator: no truth came on {}: waves are held against the set height alone, heave against "
+               "nothing (on a real rig: node motion --tell-truth)\n",
+               channel::kTruth);
   evaluation::write_results(directory.working(), results);
   directory.finish();
   fmt::print("{}\nResults: {}\n", rig::results_table(results, rig::Mover::kArm), arguments.out);

@@ -53,6 +53,7 @@ int run_motion(const MotionArguments& arguments) {
 
   rig::MotionNode node(bus, drive, axis, rig::profile_of(chosen.campaign, chosen.plan),
                        rig::ordered_run(chosen.plan));
+  if (arguments.tells_truth) node.tell_truth(rig::arm_placement(chosen.campaign, chosen.plan));
   bool told_to_stop = false;
   std::int64_t tick = clock.now();
   while (!(node.finished() && node.at_rest())) {

@@ -16,6 +16,7 @@ int run_rig_sim(const RigSimArguments& arguments);
 struct MotionArguments {
   std::string campaign, run, bus, drive;
   double speed = 1, max_cycle_gap_ms = 50, max_following_error_deg = 1.15, response_timeout_ms = 20;
+  bool tells_truth = false;
 };
 int run_motion(const MotionArguments& arguments);
 
